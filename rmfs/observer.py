@@ -28,31 +28,34 @@ class MotionCounts(TravelTimes, Protocol):
     """The part of the traffic model that counts motion, starting after the warm-up."""
 
     def motion(self) -> dict[str, NDArray[Any]]:
-        """Return distances and times of each robot."""
+        """Return distances (m) and times (s) by name, each of shape (R,)."""
         ...
 
     def heat(self) -> dict[str, NDArray[Any]]:
-        """Return visits and waiting at each waypoint."""
+        """Return visits and waiting times (s) of robots at waypoints, by name."""
         ...
 
     def trips(self) -> dict[str, NDArray[Any]]:
-        """Return the completed trips."""
+        """Return the completed trips as columns by name."""
         ...
 
     def edges(self) -> dict[str, NDArray[Any]]:
-        """Return the number of passages of each edge that was used."""
+        """Return the edges used and their passages as columns by name."""
         ...
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return the energy drawn and charged by each robot; only if the scenario models energy."""
+        """Return energies of each robot by name, such as those drawn and charged, in J.
+
+        Only if the scenario models energy.
+        """
         ...
 
     def used_j(self, robot: int) -> float:
-        """Return the energy drawn by a robot since time zero; only with an energy model."""
+        """Return the energy drawn by a robot since time zero, in J; only with an energy model."""
         ...
 
     def counters(self) -> dict[str, float]:
-        """Return counters of path planning, and its wall time."""
+        """Return counters of path planning by name, and its wall time in s."""
         ...
 
 
@@ -60,7 +63,7 @@ class Troubles(Protocol):
     """The part of a run that records disturbances."""
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return the number of disturbances in a time interval, and their total duration."""
+        """Return the number of disturbances in a period, and their total duration in it, in s."""
         ...
 
 
@@ -77,9 +80,9 @@ class Observed:
     traffic
         Counts motion and knows travel times.
     disturbances
-        Disturbances of the run.
+        Counts the disturbances of the run.
     order_stream, bundle_stream
-        The orders and bundles read from a file, if the scenario names one.
+        The orders, or bundles, read from a file; None if the scenario names none.
     """
 
     layout: Layout
@@ -116,7 +119,7 @@ class Observer:
         """Report that an order moved from the backlog to a station's pool (`order.queued_at`)."""
 
     def picks_changed(self, time_s: float, robot: int) -> None:
-        """Report that requests were bound to the pod of a current pick task, or reopened."""
+        """Report that requests were bound to the pod of a robot's pick task, or reopened."""
 
     def unit_picked(
         self,
@@ -128,22 +131,25 @@ class Observer:
         station: int,
         late_bound: bool,
     ) -> None:
-        """Report a picked unit; `late_bound`: it was added to the pod's task while under way."""
+        """Report that the pick of a unit starts.
+
+        `late_bound`: the unit was added to the pod's task after the task had begun.
+        """
 
     def unit_handled(self, handled: Handled) -> None:
-        """Report how the picker handled the last unit; only in scenarios with pickers."""
+        """Report how the picker handles the unit just reported; only in scenarios with pickers."""
 
     def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
         """Report that a picker leaves a pick station, having been there during [from_s, to_s)."""
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
-        """Report that the last unit of an order line was picked."""
+        """Report that the pick of an order line's last unit starts; `units`: all of the line."""
 
     def order_completed(self, order: Order) -> None:
-        """Report that an order is picked and has left its station (`order.completed_s`)."""
+        """Report that an order, with all its parts, has left the stations (`completed_s`)."""
 
     def slot_freed(self, order: Order) -> None:
-        """Report that a pick station released an order, or its part of one, and freed the slot."""
+        """Report that an order, or a part of one, has left its pick station and freed the slot."""
 
     def tote_held(self, station: int, from_s: float, to_s: float) -> None:
         """Report that an order, or a part, could not leave a pick station during [from_s, to_s)."""
@@ -167,19 +173,19 @@ class Observer:
         """Report that a bundle has a station and a pod (`station`, `pod`, `assigned_s`)."""
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Report that a bundle was put into its pod (`bundle.stored_s`)."""
+        """Report that the transfer of a bundle into its pod starts (`bundle.stored_s`)."""
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """Report that a robot with its pod reached the head of a station's queue."""
+        """Report that a robot reached the head of a station's queue; pod -1 if it carries none."""
 
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """Report that the robot was sent away from the station."""
+        """Report that a robot leaves the head of a station's queue; pod -1 if it carries none."""
 
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
-        """Report that the station handles one unit or bundle during [from_s, to_s)."""
+        """Report that a station is busy with one unit, bundle, visit or robot in [from_s, to_s)."""
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """Report a task from TA: pick, replenish, park, rest or reposition (station or -1)."""
+        """Report that a robot starts a task of a kind (`Task.kind`); station -1 if it has none."""
 
     def robot_free(self, robot: int) -> None:
         """Report that a robot's task ended and it needs a new one."""
@@ -191,13 +197,16 @@ class Observer:
         """Report that a robot starts to lift a pod."""
 
     def pod_set_down(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
-        """Report that a pod stands at a storage place again."""
+        """Report that a robot has set down its pod at a storage place."""
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Report that a controller made this many decisions in one call (POA, PPS, ...)."""
+        """Report a call of a controller, which took `wall_s` of wall time.
+
+        `decisions` excludes those based on an optimiser's solution, which the `Call` counts.
+        """
 
     def rule_decided(self, problem: str, time_s: float) -> None:
-        """Report that a controller that uses optimisers decided by its own rule."""
+        """Report that a controller that asks optimisers made a decision by its own rule."""
 
     def optimiser_asked(self, call: Call) -> None:
         """Report that a controller asked an optimiser a question."""
@@ -206,13 +215,13 @@ class Observer:
         """Report that an answer arrived or the call failed; parts of it may be applied later."""
 
     def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
-        """Report that another controller was installed for a problem."""
+        """Report that another controller, the rule `name`, was installed for a problem."""
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """Report that SA switched a station on or off."""
 
     def warmup_ended(self, time_s: float) -> None:
-        """Report the end of the warm-up: forget all counts; work in progress carries over."""
+        """Report the end of the warm-up: observers reset their counts; work in progress goes on."""
 
     def sampled(self, time_s: float) -> None:
-        """Report that a minute of simulated time has passed."""
+        """Report that another simulated minute has passed since the end of the warm-up."""

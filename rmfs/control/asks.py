@@ -17,10 +17,10 @@ Q = TypeVar("Q")
 D = TypeVar("D")
 
 BOUND_TOLERANCE = 1e-6
-"""Amount by which a bound may exceed the objective due to rounding, relative to the objective."""
+"""Amount by which a bound may exceed the objective z due to rounding, relative to max(1, |z|)."""
 
 Plain = NDArray[Any] | int | float | str | bool | Sequence["Plain"]
-"""Values allowed in a solution, which is sent between processes, recorded and replayed."""
+"""A value in a solution. Solutions are sent between processes, recorded and replayed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,32 +30,34 @@ class Answer:
     Attributes
     ----------
     solution
-        Arrays and numbers by name; None if there is no solution or none was found in time.
+        Values by name; None if there is no solution or none was found in time.
     objective, bound
-        Cost of the solution, and proven lower bound; inf or nan if there is none.
+        Cost of the solution, and proven lower bound; not finite if there is none.
     status
         Final status, as the solver names it.
     backend
         Name of the back end.
     work
-        Deterministic work, in the unit of the back end.
+        Effort of the solver in the unit of the back end, the same whenever the question is solved.
     wall_s, build_s
         Total wall time, and the part spent building the solver's model.
     built
-        Size of the model that was built (nonzeros), which is charged in addition to the work.
+        Size of the solver's model (nonzeros). Pacing by work turns `work` and `built` into
+        simulated time.
     scale
         Reference for the relative gap, in the unit of the objective, such as the cost of the pods
-        called. Default: the objective, which is unsuitable if gains and costs cancel out.
+        called. Default: the absolute objective, which is unsuitable if gains and costs cancel out.
     found
-        The optimiser's complete values, for saving questions and answers; `solution` is the part
-        that the controller needs. Not recorded.
+        All values that the optimiser found, for saving questions and answers; they are not
+        recorded. `solution` is the part that the controller needs.
 
     Raises
     ------
     TypeError
-        If the solution is not a mapping, or a value is not a number.
+        If the solution is not a mapping, or a cost, time or size is not a number.
     ValueError
-        If work is negative or not finite, or a bound is beyond the objective.
+        If `work`, `built`, `wall_s` or `build_s` is negative or not finite, or the bound exceeds
+        the objective of a solution by more than `BOUND_TOLERANCE`.
     """
 
     solution: Mapping[str, Plain] | None
@@ -87,14 +89,14 @@ class Answer:
 
     @property
     def gap_abs(self) -> float:
-        """Absolute gap between objective and bound; nan if either is missing."""
+        """Absolute difference of objective and bound; nan without a solution or a finite bound."""
         if self.solution is None or not isfinite(self.objective - self.bound):
             return nan
         return abs(self.objective - self.bound)
 
     @property
     def gap(self) -> float:
-        """`gap_abs` relative to `scale`; 0 if `gap_abs` is 0, else nan if `scale` is 0."""
+        """`gap_abs` as a share of `scale`; 0 if `gap_abs` is 0, else nan if `scale` is 0."""
         scale = abs(self.objective) if isnan(self.scale) else self.scale
         if self.gap_abs == 0.0:
             return 0.0
@@ -102,12 +104,12 @@ class Answer:
 
 
 def checked(answer: Any) -> Answer:
-    """Return an optimiser's return value if it is an `Answer`.
+    """Return the value that an optimiser returned, after checking that it is an `Answer`.
 
     Raises
     ------
     TypeError
-        If it is not an `Answer`.
+        If it is something else.
     """
     if not isinstance(answer, Answer):
         raise TypeError(f"an optimiser must return an Answer; it returned {type(answer).__name__}")
@@ -121,15 +123,15 @@ class Ask(Generic[Q]):
     Attributes
     ----------
     solve
-        Function of a module that another process can import. It must always give the same answer
-        to the same question.
+        The optimiser: a function at the top level of a module, which another process can import. It
+        must always give the same answer to the same question.
     question
         The relevant state of the world: a frozen dataclass of arrays and numbers copied from the
         view.
     sizes
         Dimensions of the question, such as `{"orders": 80}`, for the table of decisions.
     memo
-        Data that the controller gets back with the answer, such as the orders behind the indices.
+        Data that the controller needs when the answer arrives, such as the orders behind indices.
     """
 
     solve: Callable[[Q], Answer]
@@ -142,7 +144,7 @@ class Outcome(StrEnum):
     """How a call ended."""
 
     WAITING = "waiting"
-    """The answer has not arrived yet, or not before the run ended."""
+    """No answer has arrived, so far or by the end of the run."""
     SOLUTION = "solution"
     NOTHING = "nothing"
     """The optimiser ended without a solution."""
@@ -153,12 +155,12 @@ class Outcome(StrEnum):
 
 
 class Asker(Protocol):
-    """A controller that asks questions (`rmfs.control.base.Controller`)."""
+    """The part of a controller (`rmfs.control.base.Controller`) that concerns its questions."""
 
     in_flight: int
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the decisions of an answer."""
+        """Yield the decisions that follow from the answer to a question."""
         ...
 
 
@@ -173,8 +175,8 @@ class Call:
     controller
         The controller that asked.
     requested_us, completed_us
-        Simulated times, in microseconds, of the question and of the effect of its answer; -1 if not
-        yet.
+        Simulated times, in microseconds, of the question and of the effect of its answer; the
+        latter is -1 while the call is waiting.
     state
         Hash of the question and of the state of the world when it was asked.
     failure
@@ -205,7 +207,7 @@ class Call:
 
     @property
     def solution(self) -> Mapping[str, Any] | None:
-        """The solution, if there is one."""
+        """The solution; None if there is none (yet)."""
         return None if self.answer is None else self.answer.solution
 
     @property
@@ -234,23 +236,21 @@ class Call:
             yield parts[number]
 
     def count(self) -> None:
-        """Count a decision based on this answer."""
+        """Count a decision of this call: as `applied`, or as `fallback` without a solution."""
         if self.solution is None:
             self.fallback += 1
         else:
             self.applied += 1
 
     def forget(self) -> None:
-        """Release the question and its values, which may be large; sizes and solution are kept."""
+        """Release the question, memo and `Answer.found`, which may be large; the rest is kept."""
         self.ask = replace(self.ask, question=None, memo=None)
         if self.answer is not None:
             self.answer = replace(self.answer, found=None)
 
 
 class By(NamedTuple, Generic[D]):
-    """A decision and the call whose solution it is based on.
-
-    The call is None if the controller's own rule decided.
+    """A decision and the call whose solution it is based on; None if the own rule decided.
 
     A decision without `By` is attributed to the controller's own rule if it comes from `decide`,
     and to the answer if it comes from `answered`.
@@ -261,11 +261,22 @@ class By(NamedTuple, Generic[D]):
 
 
 def told_by(decision: Any, otherwise: Call | None) -> tuple[Any, Call | None]:
-    """Separate a decision from the call on which it is based."""
+    """Return a decision without `By`, and the call on which it is based.
+
+    Parameters
+    ----------
+    decision
+        A decision, with or without `By`.
+    otherwise
+        The call of a decision without `By`.
+    """
     return decision if type(decision) is By else (decision, otherwise)
 
 
 def own(decisions: Iterable[D]) -> Iterator[D | By[D]]:
-    """Yield decisions attributed to the controller's own rule, even from within `answered`."""
+    """Yield decisions attributed to the controller's own rule, even from within `answered`.
+
+    Questions (`Ask`) are passed on unchanged.
+    """
     for decision in decisions:
         yield decision if type(decision) is Ask else By(decision, None)

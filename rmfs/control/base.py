@@ -74,15 +74,16 @@ class Controller(Generic[P]):
     parameters_model
         Model of its parameters, which defines file format, `--set` and documentation.
     triggers
-        Events after which all controllers of the problem are asked (paper, table 1).
+        Events after which controllers of the problem are asked (paper, table 1), unless a rule
+        overrides them.
     subscriptions
         Further events after which this controller is asked.
     hears
         Events that are passed to `hear` immediately, even if no decision is due.
     waits_for
-        Problems that must be decided first; two rules that wait for each other are refused.
+        Problems whose decisions it waits for; two rules that wait for each other are refused.
     decides
-        Further problems that it decides; each of them must be set to a dummy.
+        Further problems that it decides; the rule of each must be a dummy.
     is_dummy
         Whether it decides nothing and leaves the problem to another controller.
     optimisers
@@ -118,7 +119,10 @@ class Controller(Generic[P]):
         self.rng = rng
 
     def next_event_s(self) -> float:
-        """Simulated time in s by which it must be asked next; read after each call."""
+        """Simulated time in s by which it must be asked again; inf: only after events.
+
+        It is read after each call.
+        """
         return inf
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
@@ -134,9 +138,10 @@ class Controller(Generic[P]):
         return iter(())
 
     def is_modelled(self, decision: Any) -> bool:
-        """Return whether its optimisers make decisions of this kind; only these are counted.
+        """Return whether a decision is of a kind that its optimisers make.
 
-        A prepared task counts when it is carried out.
+        Only these are counted as decisions by a solution or by the own rule. A prepared task counts
+        when it is carried out.
         """
         return not getattr(decision, "is_ahead", False)
 

@@ -38,12 +38,12 @@ if TYPE_CHECKING:
 
 
 def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) -> Candidates:
-    """List the possible answers to a question.
+    """List the possible answers to a question; none in a turn of MM.
 
     Parameters
     ----------
     refused
-        Answers of the same turn that could not be carried out.
+        Answers of the same turn that could not be carried out; they are left out in a turn of TA.
     """
     if question.kind != "turn":
         return _OF_KIND[question.kind](view, view.robots[question.robot], question.stations)

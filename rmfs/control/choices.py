@@ -58,7 +58,7 @@ def choose(problem: Problem, table: Table, source: str) -> Choice:
     Raises
     ------
     InputError
-        If something is wrong; names the key and the valid values.
+        If the rule, a key or a value is invalid; names the key and what would be valid.
     """
     parameters = dict(table)
     name = parameters.pop("name", DEFAULTS[problem])

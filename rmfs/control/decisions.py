@@ -36,8 +36,8 @@ class AssignLines(NamedTuple):
 class QueueOrder(NamedTuple):
     """POA: move an order of the backlog into the pool of a pick station.
 
-    It remains in the backlog and can only be assigned to this station, but pods can be bound to it.
-    Station -1 removes it from its pool and unbinds its pods.
+    The order remains in the backlog and can only be assigned to this station, but its requests can
+    be bound to pods. Station -1 removes it from its pool and makes these requests open again.
     """
 
     order: Order
@@ -52,20 +52,20 @@ class SendBundle(NamedTuple):
 
 
 class PromiseBundle(NamedTuple):
-    """RPS: reserve room on a pod for a bundle, without releasing the decision yet."""
+    """RPS: choose the pod of a bundle, which reserves room; not released until `ReleasePod`."""
 
     bundle: Bundle
     pod: int
 
 
 class ReleasePod(NamedTuple):
-    """RPS: release the bundles promised to a pod, so that a station can be chosen."""
+    """RPS: release the bundles promised to a pod, after which ROA and TA may act on the choice."""
 
     pod: int
 
 
 class BringForPicks(NamedTuple):
-    """TA: bring a pod (or the one already carried) to a pick station."""
+    """TA: bring an available pod, or the one already carried, to a pick station."""
 
     robot: Robot
     pod: int
@@ -77,7 +77,7 @@ class BringForPicks(NamedTuple):
 
 
 class BringForBundles(NamedTuple):
-    """TA: bring a pod (or the one already carried) to a replenishment station."""
+    """TA: bring an available pod, or the one already carried, to a replenishment station."""
 
     robot: Robot
     pod: int
@@ -89,7 +89,7 @@ class BringForBundles(NamedTuple):
 
 
 class Visit(NamedTuple):
-    """Bring a pod (or the one already carried) to a station of another kind.
+    """TA: bring an available pod, or the one already carried, to a station of another kind.
 
     `what` is the kind of task, as defined by the kind of station.
     """
@@ -107,7 +107,7 @@ class Visit(NamedTuple):
 class Park(NamedTuple):
     """TA: store the carried pod at a place.
 
-    In a prepared task the place may be -1: PSA then chooses it when the task begins.
+    In a prepared task the place may be -1: PSA then chooses the place when the task begins.
     """
 
     robot: Robot
@@ -131,7 +131,7 @@ class Reposition(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """TA: wait at a place."""
+    """TA: wait at a waypoint without a pod; TA may give the robot another task at any time."""
 
     robot: Robot
     place: int
@@ -146,7 +146,10 @@ TaskDecision = BringForPicks | BringForBundles | Visit | Park | Reposition | Res
 
 
 class WorkFor(NamedTuple):
-    """TA, from outside: let a robot work for a station; PPS chooses a pod unless it carries one."""
+    """TA, from outside: let a robot work for a station.
+
+    PPS chooses the pod, unless the robot carries one.
+    """
 
     robot: Robot
     station: int
@@ -159,7 +162,10 @@ class Store(NamedTuple):
 
 
 class MovePod(NamedTuple):
-    """TA, from outside: let a robot without a pod move one; repositioning chooses pod and place."""
+    """TA, from outside: let a robot without a pod move an idle one.
+
+    Repositioning chooses pod and place.
+    """
 
     robot: Robot
 
@@ -172,9 +178,9 @@ class _Ahead(NamedTuple):
 class Prepare(_Ahead):
     """TA: the next tasks of a robot, in order; they replace earlier prepared tasks.
 
-    Prepared tasks reserve nothing. A task that has become impossible by then (the pod is claimed,
-    the place occupied, the work done by others) is skipped; after the last one, TA is asked as
-    usual.
+    Prepared tasks reserve nothing. A task that is impossible when its turn comes (the pod is
+    claimed, the place occupied, the work done by others) is skipped; after the last one, TA is
+    asked as usual.
     """
 
     __slots__ = ()
@@ -202,7 +208,7 @@ class Unplug(NamedTuple):
 
 
 class SwitchStation(NamedTuple):
-    """SA: let a station take new work, or not."""
+    """SA: switch a station on (it may get new work) or off."""
 
     station: int
     active: bool

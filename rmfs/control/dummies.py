@@ -1,7 +1,7 @@
 """Dummies: placeholders for problems that a joint controller of another problem decides.
 
-A dummy is never asked, or answers that nothing can be done. A controllers file with a dummy needs a
-controller that lists the problem in `decides`.
+A dummy makes no decision: it is not asked, or its answer is that there is nothing to do. A
+controllers file with a dummy needs a controller that lists the problem in `decides`.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ class DummySA(StationActivation[NoParameters]):
 
 
 class DummyCA(ChargeAssignment[NoParameters]):
-    """Leaves charging to another controller; robots that run low are sent in any case."""
+    """Leaves charging to another controller; robots that run low are sent to charge in any case."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER

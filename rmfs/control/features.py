@@ -26,7 +26,7 @@ LIMIT = 10.0
 """Maximum absolute value of a feature; larger ones are clipped."""
 
 FAR = 1e9
-"""Maximum absolute value in rankings; larger ones are clipped."""
+"""Maximum value in rankings; larger ones are clipped."""
 
 KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.POA: ("poa",),
@@ -40,7 +40,7 @@ KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.REPOSITIONING: ("move",),
     Problem.CA: ("ca",),
 }
-"""The kinds of question of each problem; a problem decided in turns has one, named like itself."""
+"""The kinds of question of each problem; for a problem decided in turns, only its own name."""
 
 COLUMNS: dict[str, tuple[str, ...]] = {
     "poa": (
@@ -59,7 +59,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "place": ("away_s", "back_s"),
     "move": ("distance_m", "reach_s"),
 }
-"""The features of each kind of question, as names of candidate columns."""
+"""The features of each kind of question: columns of its candidates, or keys of `OWN_MEANINGS`."""
 
 _KIND_OF_TASK = ("work", "store", "move", "rest")
 
@@ -115,7 +115,7 @@ RANKINGS: dict[str, dict[str, float]] = {
     "place": {"away_s": -1.0, "back_s": -1.0},
     "move": {"distance_m": -1.0, "reach_s": -1.0},
 }
-"""Weights of the unscaled columns; the weighted sum ranks candidates to find the k best."""
+"""Weights of unscaled features; the k candidates with the greatest weighted sums are the best."""
 
 
 class Feature(NamedTuple):
@@ -128,14 +128,14 @@ class Feature(NamedTuple):
 
 
 def features_of(kinds: Iterable[str]) -> tuple[Feature, ...]:
-    """Return the features of candidates for some kinds of question, without duplicates."""
+    """Return the features of some kinds of question, in order of appearance, each once."""
     names = dict.fromkeys(name for kind in kinds for name in COLUMNS[kind])
     told = {**{name: tuple(one) for name, one in MEANINGS.items()}, **OWN_MEANINGS}
     return tuple(Feature(name, told[name][0], SCALES[name], told[name][1]) for name in names)
 
 
 def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[np.float64]]:
-    """Return the columns of candidates that are features, unscaled, each of shape (C,)."""
+    """Return the unscaled features of C candidates by name, each of shape (C,)."""
     columns = candidates.columns
     if kind == "ta":
         task = columns["kind"]
@@ -147,7 +147,10 @@ def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[
 
 
 def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> NDArray[np.float64]:
-    """Return the scaled features of C candidates, shape (C, F); zero for missing columns."""
+    """Return the F features named, scaled and clipped, of C candidates, shape (C, F).
+
+    A feature missing in `columns` is 0.
+    """
     count = len(next(iter(columns.values()))) if columns else 0
     found = np.zeros((count, len(names)))
     for place, name in enumerate(names):
@@ -160,9 +163,9 @@ def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> 
 def best_rows(
     columns: Mapping[str, NDArray[np.float64]], weights: Mapping[str, float], k: int
 ) -> NDArray[np.intp]:
-    """Return the rows of the k best candidates by a weighted sum, the best first.
+    """Return the rows of the k candidates with the greatest weighted sums, the greatest first.
 
-    Ties go to the earlier row.
+    There are fewer than k rows if there are fewer candidates. Ties go to the earlier row.
     """
     count = len(next(iter(columns.values()))) if columns else 0
     score = np.zeros(count)

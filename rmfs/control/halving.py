@@ -21,17 +21,17 @@ class Comparison:
     Attributes
     ----------
     trials
-        Function that tries out a decision.
+        Function that tries out one of the decisions in one of the futures.
     count
         Number of decisions.
     samples
         Maximum number of futures in which each decision is tried.
     instants
-        Budget: no further round starts once this many instants have been simulated.
+        Budget: no further future is tried once this many instants have been simulated.
     certainty
         A decision replaces the first only if its mean advantage exceeds this many standard errors.
     state
-        Identifies the question for hashing.
+        Numbers that identify the state of the run, for the hash of the question.
     """
 
     trials: Trials
@@ -47,13 +47,19 @@ class Comparison:
 
 
 def solve(question: Comparison) -> Answer:
-    """Find the decision with the greatest value.
+    """Find the decision with the greatest mean value, by sequential halving.
 
     All decisions are tried in one future. Each further round doubles the number of futures, and
-    after each round the worse half of the decisions is dropped. The base rule's decision stays, so
-    that the others are compared with it in the same futures (Karnin, Koren and Somekh 2013, "Almost
-    optimal exploration in multi-armed
-    bandits"). Work is counted in instants.
+    after each round the worse half of the other decisions is dropped. The base rule's decision
+    stays, so that the others are compared with it in the same futures; it is chosen if no other is
+    better by `certainty` standard errors. Source: Karnin, Koren and Somekh (2013), "Almost optimal
+    exploration in multi-armed bandits".
+
+    Returns
+    -------
+    Answer
+        `row` of the solution is the index of the decision, the objective its mean value, negated.
+        Work is counted in instants.
     """
     values: dict[int, list[float]] = {row: [] for row in range(question.count)}
     alive, tried, spent, round_end = list(values), 0, 0, 1

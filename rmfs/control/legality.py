@@ -23,7 +23,7 @@ KINDS: dict[Problem, tuple[type, ...]] = {
 
 
 def why_not(given: Any, question: Question, view: View) -> str:
-    """Return why an answer is impossible, or an empty string if it is possible.
+    """Return why an answer is impossible now, or an empty string if there is no objection.
 
     Parameters
     ----------
@@ -40,7 +40,10 @@ def why_not(given: Any, question: Question, view: View) -> str:
 
 
 def reason(decision: Any, view: View) -> str:
-    """Return why a decision is impossible now, or an empty string if it is possible."""
+    """Return why a decision is impossible now, or an empty string if there is no objection.
+
+    `Prepare` and `Exchange` are not checked; nor is whether PPS or repositioning find a pod.
+    """
     check = _DECISIONS.get(type(decision))
     if check is None:
         return f"{type(decision).__name__} is not a decision of rmfs.control.decisions"

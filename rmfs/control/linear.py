@@ -35,7 +35,10 @@ STARTS: dict[str, Weights] = {
 
 
 def default_weights(kind: str) -> Weights:
-    """Return the initial weights of a rule; by default those of the ranking."""
+    """Return initial weights of the scaled features of a kind of question.
+
+    They are those of `STARTS` or else of `RANKINGS`, converted to scaled features.
+    """
     if kind in STARTS:
         return {name: STARTS[kind].get(name, 0.0) for name in COLUMNS[kind]}
     ranking = RANKINGS[kind]
@@ -63,7 +66,9 @@ def best_of(
     weights: Weights,
     among: NDArray[np.intp] | None = None,
 ) -> int:
-    """Return the row with the greatest weighted sum, the first in a tie; -1 if there is none.
+    """Return the row with the greatest weighted sum; -1 if there is no candidate.
+
+    Ties go to the first of the rows.
 
     Parameters
     ----------
@@ -83,7 +88,13 @@ def scores(
     weights: Weights,
     rows: NDArray[np.intp] | slice = ALL,
 ) -> NDArray[np.float64]:
-    """Return the weighted sum of each candidate, or of selected rows, shape (C,)."""
+    """Return the weighted sum of the scaled features of each row, in the order of `rows`.
+
+    Parameters
+    ----------
+    rows
+        Rows of the candidates. Default: all.
+    """
     columns = {name: values[rows] for name, values in numbers(candidates, kind, view).items()}
     names = list(weights)
     features = matrix(columns, names)

@@ -1,6 +1,6 @@
 """Look-ahead: lets a controller try out decisions before it makes one.
 
-A controller that sets `looks_ahead` is given a `LookAhead`. It passes some decisions and gets
+A controller that sets `looks_ahead` is given a `LookAhead`. It passes some decisions to it and gets
 trials: copies of the run, each with one of the decisions applied and a base rule that continues.
 The future of a copy is drawn anew, from separate streams that are the same for all compared
 decisions, so it reveals nothing about the real future. A controller never has access to the run
@@ -44,7 +44,7 @@ class Tried(NamedTuple):
     Attributes
     ----------
     value
-        Value of the trial.
+        Value of the trial, as defined by the `Goal`.
     instants
         Number of simulated instants, as a measure of work.
     """
@@ -54,10 +54,10 @@ class Tried(NamedTuple):
 
 
 class Trials(Protocol):
-    """Decisions that can be tried out, one at a time."""
+    """Function that tries out one of several decisions in one of many futures."""
 
     def __call__(self, which: int, sample: int) -> Tried:
-        """Try one of the decisions.
+        """Try out a decision in a future.
 
         Parameters
         ----------
@@ -84,15 +84,21 @@ class LookAhead(Protocol):
 
         Parameters
         ----------
+        problem
+            The problem that the decisions solve.
+        decisions
+            The decisions to be compared.
         base
             Rule that decides the problem after the tried decision.
         horizon_s
-            How long each trial lasts.
+            Simulated duration of a trial in s.
+        goal
+            Defines the value of a trial.
 
         Raises
         ------
         InputError
-            If the future cannot be drawn anew (orders come from a file), or the run cannot be
-            copied (pacing wall).
+            If the future cannot be drawn anew (orders or bundles come from a file), or the run
+            cannot be copied (pacing wall).
         """
         ...

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Problem(StrEnum):
-    """Decision problems (paper, section 2.1); the value is the table in a controllers file."""
+    """Decision problems (paper, section 2.1); the value is the key in a controllers file."""
 
     POA = "poa"
     ROA = "roa"
@@ -23,7 +23,7 @@ class Problem(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """The meaning of the abbreviation."""
+        """What the abbreviation stands for, and what is decided."""
         return _DECLARED[self].meaning
 
     @property
@@ -36,12 +36,15 @@ class Problem(StrEnum):
 
     @property
     def default(self) -> str:
-        """The rule used if a file does not mention the problem."""
+        """Name of the rule used if a controllers file does not mention the problem."""
         return _DECLARED[self].default
 
     @property
     def decisions(self) -> tuple[str, ...]:
-        """Its classes in `rmfs.control.decisions`; empty for problems that only answer TA."""
+        """Names of the classes of its decisions in `rmfs.control.decisions`.
+
+        Empty for PPS, PSA and repositioning, which answer questions of TA, and for PP.
+        """
         return _DECLARED[self].decisions
 
 
@@ -128,9 +131,9 @@ class Trigger(IntEnum):
     ORDER_ASSIGNED = 2
     """An order was assigned to a pick station [Order]."""
     UNIT_PICKED = 3
-    """A unit left a pod [pod, SKU]."""
+    """The pick of a unit starts: the unit left its pod [pod, SKU]."""
     ORDER_COMPLETED = 4
-    """A pick station finished an order and freed its slot [Order]."""
+    """A pick station handed on an order, or its part of one, which freed the slot [Order]."""
     NEW_BUNDLE = 5
     """A bundle joined the backlog [Bundle]."""
     BUNDLE_PROMISED = 6
@@ -142,7 +145,7 @@ class Trigger(IntEnum):
     BUNDLE_ASSIGNED = 9
     """The pod and the station of a bundle are both decided [Bundle]."""
     BUNDLE_STORED = 10
-    """A bundle starts to go into its pod [Bundle]."""
+    """The transfer of a bundle starts: its units are in stock now [Bundle]."""
     STATION_SWITCHED = 11
     """A station was switched on or off [station]."""
     ROBOT_FREE = 12
@@ -152,6 +155,6 @@ class Trigger(IntEnum):
     POD_LIFTED = 14
     """A robot starts to lift a pod [pod]."""
     POD_AT_STATION = 15
-    """A robot with its pod reached the head of a queue [station]."""
+    """A robot, with its pod if it carries one, reached the head of a queue [station]."""
     ORDER_QUEUED = 16
     """An order of the backlog joined the pool of a pick station [Order]."""

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """A decision to be made outside the simulation.
+    """A question that is answered outside the simulation.
 
     Attributes
     ----------
@@ -19,9 +19,9 @@ class Question:
         `turn`: the next decision of a problem. Questions of TA: `pick pod`, `replenishment pod` and
         `next station` (PPS), `place` (PSA), `move` (repositioning).
     robot
-        The robot that a question of TA concerns, or -1.
+        The robot that a question of TA concerns; -1 for a turn.
     stations
-        The station of `pick pod` and `replenishment pod`; the options of `next station`.
+        For `pick pod` and `replenishment pod`, the station; for `next station`, the options.
     """
 
     problem: Problem

@@ -146,17 +146,17 @@ _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
 
 
 def names(problem: Problem) -> list[str]:
-    """Return the names of all rules for a problem, built-in ones first."""
+    """Return the names of all rules: of `rmfs.control`, of `rmfs.solvers`, then installed ones."""
     return [*_BUILT_IN[problem], *solver_backed(problem), *sorted(_installed(problem))]
 
 
 def built_in(problem: Problem) -> list[str]:
-    """Return the names of the rules that come with rmfs."""
+    """Return the names of the rules for a problem in `rmfs.control`."""
     return list(_BUILT_IN[problem])
 
 
 def solver_backed(problem: Problem) -> list[str]:
-    """Return the names of the controllers in `solvers`, which use optimisers."""
+    """Return the names of the controllers for a problem in `rmfs.solvers`, which ask optimisers."""
     return list(_SOLVER_BACKED.get(problem, ()))
 
 
@@ -171,7 +171,8 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     Raises
     ------
     InputError
-        If there is no such rule, or it does not solve this problem.
+        If there is no such rule, it cannot be imported, lacks a method, or does not solve this
+        problem.
     """
     shipped = _BUILT_IN[problem] | _SOLVER_BACKED.get(problem, {})
     reference = shipped.get(name) or _installed(problem).get(name)

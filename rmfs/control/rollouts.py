@@ -69,7 +69,7 @@ class TriesOut:
         self.base.hear(trigger, subject)
 
     def next_event_s(self) -> float:
-        """Time by which the base rule needs to be asked."""
+        """Simulated time in s by which the base rule must be asked again."""
         return float(self.base.next_event_s())
 
     def best(self, call: Call) -> Iterator[Any]:
@@ -91,7 +91,8 @@ def base_rule(
     Raises
     ------
     InputError
-        If there is no such rule, or it is unsuitable.
+        If there is no such rule, its parameters are invalid, or it asks optimisers, is a dummy or
+        decides other problems as well.
     """
     choice = choose(problem, parameters.base, f"{problem}.base")
     rule = choice.controller
@@ -109,7 +110,7 @@ def question(
     decisions: Sequence[Any],
     parameters: RolloutParameters,
 ) -> Ask[Comparison]:
-    """Ask which decision is best; the first one is that of the base rule."""
+    """Return the question which decision is best; the first must be that of the base rule."""
     view = controller.view
     trials = controller.lookahead(
         controller.problem, decisions, base, parameters.horizon_s, parameters.goal

@@ -45,7 +45,7 @@ class ControllerSettings:
         return head | {str(problem): choice.to_table() for problem, choice in self.choices.items()}
 
     def rules(self) -> list[type[Controller[Any]]]:
-        """Classes of all rules, including those that method management may install."""
+        """Return the classes of all rules, including those that MM may install, each once."""
         named = dict.fromkeys(_rules_in(self.to_table()))
         return list(dict.fromkeys(registry.find(problem, name) for problem, name in named))
 
@@ -73,7 +73,7 @@ class _File(RuleTables):
 def load(
     name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
 ) -> ControllerSettings:
-    """Load a controllers file; see `load_with_notes`."""
+    """Load a controllers file without the notes; see `load_with_notes`."""
     return load_with_notes(name_or_path, overrides)[0]
 
 
@@ -98,7 +98,8 @@ def load_with_notes(
     Raises
     ------
     InputError
-        If something in the file is wrong; names the key and the valid values.
+        If there is no such file or set, or its contents are invalid; names the key and what would
+        be valid.
     """
     path = instances.locate("controllers", str(name_or_path))
     if path.suffix.lower() == ".xconf":
@@ -120,7 +121,20 @@ def _anchor(table: Table, folder: Path) -> None:
 def settings(
     table: Table, overrides: Sequence[tuple[list[str], Any]] = (), source: str = "controllers"
 ) -> ControllerSettings:
-    """Validate the contents of a controllers file; see `load`."""
+    """Validate the contents of a controllers file.
+
+    Parameters
+    ----------
+    overrides
+        As in `load_with_notes`.
+    source
+        Name of the source in error messages.
+
+    Raises
+    ------
+    InputError
+        If the contents are invalid; names the key and what would be valid.
+    """
     file = config.validate(_File, _overridden(table, list(overrides)), source)
     choices = {
         problem: choose(problem, getattr(file, problem) or {}, source) for problem in Problem

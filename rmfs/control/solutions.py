@@ -21,13 +21,14 @@ def to_text(solution: Mapping[str, Plain]) -> str:
     Raises
     ------
     TypeError
-        If it contains anything but arrays, numbers, strings and sequences of these.
+        If it contains something that is neither a value of JSON nor a NumPy array or scalar of
+        numbers, truth values or strings.
     """
     return json.dumps({str(name): value for name, value in solution.items()}, default=_plain)
 
 
 def from_text(text: str) -> dict[str, Any]:
-    """Read a solution."""
+    """Read a solution written by `to_text`; sequences become lists."""
     solution: dict[str, Any] = json.loads(text, object_hook=_array)
     return solution
 

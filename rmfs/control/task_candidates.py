@@ -30,14 +30,14 @@ def tasks(
 ) -> Candidates:
     """List the possible tasks of each robot that needs a task or rests.
 
-    Decision objects are created only for rows that are accessed, since most are only compared.
+    Decision objects are created only for rows that are accessed, since most rows are only compared.
 
     Parameters
     ----------
     refused
-        Decisions of the same turn that could not be carried out.
+        Decisions of the same turn that could not be carried out; they are left out.
     robots
-        Restrict the list to these robots.
+        Robots to be listed. Default: all that need a task or rest.
     """
     if robots is None:
         robots = [*view.asking.values(), *view.resting.values()]
@@ -72,7 +72,7 @@ def tasks(
 
 
 def has_tasks(view: View) -> bool:
-    """Whether there is any task for a robot, other than moving an idle pod."""
+    """Whether a robot needs a task, or one at rest could do more than move an idle pod."""
     if view.asking:
         return True
     busy = any(station.has_open_work for station in view.stations)
@@ -80,7 +80,11 @@ def has_tasks(view: View) -> bool:
 
 
 def open_work(view: View, station: int) -> int:
-    """Return the units, or pods with bundles, for which no pod or robot is under way."""
+    """Return the amount of a station's open work, which no pod is under way to do.
+
+    For a pick station, it is the number of units that open orders still need; for a replenishment
+    station, the number of pods with waiting bundles.
+    """
     target = view.stations[station]
     return target.requests.units if isinstance(target, PickStation) else len(target.waiting)
 

@@ -22,7 +22,10 @@ Metric = Literal["euclidean", "manhattan", "path", "time"]
 
 
 class TravelTimes(Protocol):
-    """The part of the traffic model that knows travel times, which depend on the type of robot."""
+    """The part of the traffic model that knows travel times, which depend on the kind of robot.
+
+    The optional `robot` is one of that kind; by default robot 0.
+    """
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = ...) -> NDArray[np.float64]:
         """Return unhindered times from all waypoints to one, shape (N,), in s; inf: unreachable."""
@@ -46,9 +49,12 @@ class TravelTables:
     ----------
     paths
         Lengths of shortest paths.
-    distances, to, away
-        Dictionaries by waypoint, with arrays of shape (N,): distances (by metric), travel times to
-        the waypoint, and travel times from it.
+    distances
+        Distances to a waypoint, shape (N,), by waypoint, metric and whether the robot is loaded;
+        path lengths from a waypoint have the key `~waypoint`.
+    to, away
+        Travel times to a waypoint, and from it, shape (N,), by waypoint and whether the robot is
+        loaded.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -61,8 +67,9 @@ class TravelTables:
 class Travel:
     """Travel times and distances between waypoints.
 
-    Exact times come from traffic and are cached per waypoint, and so are distances. Request them
-    only for stations, of which there are few, and use `estimate_s` for all other waypoints.
+    Travel times come from traffic and are those of robot 0's kind, from rest to rest with the best
+    initial heading. They are cached per waypoint, and so are distances. Request them only for
+    stations, of which there are few, and use `estimate_s` for all other waypoints.
 
     Parameters
     ----------
@@ -94,14 +101,14 @@ class Travel:
         self._other_tier_m = 1 + max(tier.length_m + tier.width_m for tier in layout.tiers)
 
     def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
-        """Return unhindered times from all waypoints to this one, shape (N,), in s."""
+        """Return unhindered times from all waypoints to this one, in s, (N,); inf: no path."""
         times = self.tables.to.get((waypoint, loaded))
         if times is None:
             times = self.tables.to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
         return times
 
     def away(self, waypoint: int, *, loaded: bool, keep: bool = True) -> NDArray[np.float64]:
-        """Return unhindered times from this waypoint to all, shape (N,), in s.
+        """Return unhindered times from this waypoint to all, shape (N,), in s; inf: no path.
 
         With `keep=False` they are not cached, for callers that cache what they need.
         """
@@ -115,7 +122,10 @@ class Travel:
     def distances_to(
         self, waypoint: int, metric: Metric, *, loaded: bool = True
     ) -> NDArray[np.float64]:
-        """Return distances from every waypoint to this one, shape (N,), in m, or s for `time`."""
+        """Return distances from every waypoint to this one, shape (N,), in m, or s for `time`.
+
+        `loaded` matters for `path` and `time` only.
+        """
         if metric == "time":
             return self.to(waypoint, loaded=loaded)
         if metric == "path":
@@ -127,7 +137,7 @@ class Travel:
     ) -> NDArray[np.float64]:
         """Return distances from this waypoint to all others, shape (N,), in m, or s for `time`.
 
-        With `keep=False` times are not cached.
+        With `keep=False` times are not cached. `loaded` matters for `path` and `time` only.
         """
         if metric == "time":
             return self.away(waypoint, loaded=loaded, keep=keep)
@@ -146,7 +156,8 @@ class Travel:
     ) -> NDArray[np.float64]:
         """Return distances from a waypoint to others, shape (n,), in m, or s for `time`.
 
-        Straight distances are recomputed at each call, which suits waypoints that rarely repeat.
+        Euclidean and Manhattan distances are recomputed at each call, which suits waypoints that
+        rarely repeat. `loaded` matters for `path` and `time` only.
         """
         if metric == "euclidean":
             return self.metres(waypoint, others)
@@ -190,7 +201,9 @@ class Travel:
         return distance
 
     def estimate_s(self, waypoint: int | _Waypoints, others: _Waypoints) -> NDArray[np.float64]:
-        """Estimate times to other waypoints: Manhattan distance at top speed plus one turn.
+        """Estimate times to other waypoints: Manhattan distance at top speed plus a quarter turn.
+
+        Speed and turn are those of the slowest kind of robot; other tiers get a surcharge.
 
         Parameters
         ----------
@@ -210,7 +223,7 @@ class Travel:
         return seconds
 
     def metres(self, waypoint: int, others: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
-        """Return Euclidean distances to waypoints, shape (n,), in m, with a surcharge for tiers."""
+        """Return Euclidean distances to waypoints in m, with a surcharge to other tiers, (n,)."""
         x, y = self._x[others] - self._x[waypoint], self._y[others] - self._y[waypoint]
         distance: NDArray[np.float64] = np.sqrt(
             x * x + y * y

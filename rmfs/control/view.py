@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 class View:
     """The world as controllers see it: to be read, never to be changed.
 
-    Its arrays are read-only. Of its objects (orders, stations, robots) controllers may read the
-    attributes, but must not call methods that change something.
+    The arrays are read-only. Controllers may read the attributes of objects (orders, stations,
+    robots), but must not call methods that change something.
 
     Attributes
     ----------
@@ -40,7 +40,8 @@ class View:
     orders, bundles
         The two backlogs (`rmfs.world.backlog`).
     pick_stations, replenishment_stations, stations
-        Stations; `stations` contains both kinds, pick stations first (`rmfs.world.stations`).
+        Pick stations, replenishment stations, and both kinds, pick stations first
+        (`rmfs.world.stations`).
     all_stations
         All stations, including those of other kinds, which come last.
     slot_news, work_news
@@ -48,21 +49,25 @@ class View:
     need
         Open units per pick station and SKU, shape (S, K).
     lines
-        Order lines of the open orders per pick station and SKU, picked or not, shape (S, K).
+        Number of order lines of the open orders per pick station and SKU, picked or not, shape
+        (S, K).
     bundles_waiting
-        Assigned bundles not yet part of a task, per replenishment station and pod, shape (S, P).
+        Number of assigned bundles not yet part of a task, per replenishment station and pod, shape
+        (S, P).
     recovery_stations
-        Stations where robots get energy: plug-in places and battery swap.
-    robots, asking, resting
-        All robots, those that need a task, and those at rest.
+        Stations where robots get energy: plug-in places and battery swap stations.
+    robots
+        All robots, by index.
+    asking, resting
+        By index, the robots that need a task, and those at rest or on their way to rest.
     queued_need
         Open units of queued orders per pick station and SKU, shape (S, K).
     travel
-        Travel times.
+        Travel times and distances.
     end_s
-        End of the run.
+        Simulated time at which the run ends, in s; inf if unknown.
     time_of_day_s
-        Time of day at time zero.
+        Time of day at time zero, in s.
     trackers
         Counters shared by controllers (`rmfs.control.trackers`).
     """
@@ -103,7 +108,7 @@ class View:
 
     @property
     def now_s(self) -> float:
-        """Current simulated time."""
+        """Current simulated time in s."""
         return self._world.now_s
 
     @property
@@ -113,18 +118,18 @@ class View:
 
     @property
     def put_wall(self) -> PutWall | None:
-        """The put wall for parts of split orders; None if orders are complete when picked."""
+        """The put wall for parts of split orders; None if the scenario has no packing."""
         return self._world.put_wall
 
     @property
     def staff(self) -> Staff | None:
-        """The pickers at the pick stations; None if every unit takes the same time."""
+        """The pickers at the pick stations; None in scenarios without pickers."""
         return self._world.staff
 
     def unit_s(self, station: int) -> float:
         """Return the mean time of a unit at a pick station, in s, given its picker's current state.
 
-        Without a picker it is the time of the layout.
+        Layers, faces and errors are left out. Without a picker it is the time of the layout.
         """
         staff = self._world.staff
         if staff is None or staff.at_station[station] is None:
@@ -149,7 +154,7 @@ class View:
 
     @cached_property
     def past_orders(self) -> Sequence[OrderContent]:
-        """Orders from before the run, for learning (`rmfs.simulation.past`)."""
+        """Orders from before the run, for rules that learn from them (`rmfs.simulation.past`)."""
         return self._draw_past_orders()
 
     def pod_waypoint(self, pod: int) -> int:
@@ -158,18 +163,18 @@ class View:
         return place if place >= 0 else self.travel.robot_waypoint(self.storage.claimed_by[pod])
 
     def work_version(self, station: int) -> tuple[int, ...]:
-        """Version of a station's work, which changes with new work and with available pods.
+        """Version of a station's work, which changes when work is added or a pod becomes available.
 
-        If no pod was found for a station, none will be found until this changes.
+        If no pod was found for a station, none will be found until the version changes.
         """
         return self.storage.version, *self.all_stations[station].work_version
 
     def has_open_work(self, station: int) -> bool:
-        """Whether a station has open requests or bundles for which no pod is under way."""
+        """Whether a station has work, open requests or waiting bundles, without a pod under way."""
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:
-        """Return the first waypoint of a robot's current task, or where it is."""
+        """Return the waypoint of the pod that a robot is to fetch, or else `robot.waypoint`."""
         task = robot.task
         if task is None or task.pod < 0 or robot.pod >= 0:
             return robot.waypoint

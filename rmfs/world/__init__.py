@@ -1,6 +1,6 @@
 """The state of the warehouse: stock, orders, stations, robots and tasks.
 
-The world holds what is true now and the operations that change it; it decides nothing.
+The world consists of the current state and the operations that change it; it decides nothing.
 """
 
 from rmfs.world.inventory import Inventory as Inventory

@@ -57,20 +57,20 @@ class OrderBacklog:
 
     @property
     def units(self) -> NDArray[np.int32]:
-        """Open units of each line, 0 where there is none, shape (B, L).
+        """Open units of each line, 0 where there is no line, shape (B, L).
 
-        All units are open unless the order is queued and a pod was bound to it.
+        All units are open, except those of a queued order that are already bound to a pod.
         """
         return self._units[: len(self.at_row)]
 
     @property
     def due_s(self) -> NDArray[np.float64]:
-        """Due time of each order, shape (B,)."""
+        """Due time of each order in s, shape (B,)."""
         return self._due_s[: len(self.at_row)]
 
     @property
     def weight(self) -> NDArray[np.float64]:
-        """Weight of each order's lateness, by its class, shape (B,)."""
+        """Weight of each order's lateness, given by its class, shape (B,)."""
         return self._weight[: len(self.at_row)]
 
     @property
@@ -117,12 +117,12 @@ class OrderBacklog:
         self._units[end] = 0
 
     def changed(self, line: OrderLine) -> None:
-        """Update the open units of a line."""
+        """Update the open units of a line after they have changed."""
         order = line.order
         self._units[self._row_of[order.index], order.lines.index(line)] = line.open_units
 
     def lines_changed(self, order: Order) -> None:
-        """Update the lines of an order that has lost some."""
+        """Update the lines of an order that has lost lines or units."""
         row = self._row_of[order.index]
         self._sku[row] = 0
         self._units[row] = 0
@@ -131,11 +131,11 @@ class OrderBacklog:
             self._units[row, column] = line.open_units
 
     def queue_changed(self, order: Order) -> None:
-        """Update the pool of an order."""
+        """Update the pool of an order after it has joined or left one."""
         self._queued_at[self._row_of[order.index]] = order.queued_at
 
     def after(self, index: int) -> list[Order]:
-        """Orders that arrived after the one of this index, latest first."""
+        """Return the orders with a greater index than this one, latest first."""
         newer = []
         for order in reversed(self.orders.values()):
             if order.index <= index:
@@ -144,7 +144,13 @@ class OrderBacklog:
         return newer
 
     def servable(self, stock: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Whether `stock` (units per SKU) suffices for every line of each order, shape (B,)."""
+        """Whether stock suffices for each order if it were the only one, shape (B,).
+
+        Parameters
+        ----------
+        stock
+            Units per SKU, shape (K,).
+        """
         short = stock[self.sku] < self.units
         short &= self.units > 0
         return np.logical_not(np.asarray(short.any(axis=1)))
@@ -165,7 +171,7 @@ class OrderBacklog:
 
 
 class BundleBacklog:
-    """Bundles not yet assigned, by the decisions they still need.
+    """Bundles that are not assigned yet, as a pod or a station is lacking or not released.
 
     Attributes
     ----------
@@ -174,13 +180,13 @@ class BundleBacklog:
     without_pod, without_station
         Bundles that RPS, or ROA, has not decided yet, in order of arrival.
     unreleased
-        Promised but unreleased bundles of each pod.
+        By pod, the bundles promised to it but not released.
     unreleased_since_s
-        For each pod, when the last of these was promised, oldest first.
+        By pod, the time in s at which the last of these was promised, earliest first.
     released
-        For each pod, released bundles without a station, the pod released first at the front.
+        By pod, the released bundles without a station, the pod released first at the front.
     space
-        Total space units.
+        Space units of all bundles.
     """
 
     def __init__(self) -> None:
@@ -206,7 +212,7 @@ class BundleBacklog:
         self.space += bundle.space
 
     def promised(self, bundle: Bundle, time_s: float) -> None:
-        """Record that RPS chose the pod without releasing the choice."""
+        """Record that RPS chose a bundle's pod (`bundle.pod`) without releasing the choice."""
         del self.without_pod[bundle.index]
         self.unreleased.setdefault(bundle.pod, []).append(bundle)
         self.unreleased_since_s.pop(bundle.pod, None)
@@ -222,7 +228,7 @@ class BundleBacklog:
         return bundles
 
     def station_chosen(self, bundle: Bundle) -> None:
-        """Record that ROA chose the station."""
+        """Record that ROA chose the station of a bundle."""
         del self.without_station[bundle.index]
         if bundle.released:
             waiting = self.released[bundle.pod]

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from rmfs.scenario.parameters import Battery
 
 J_PER_WH = 3600.0
-"""Joules of a watt-hour."""
+"""Joules in a watt-hour."""
 
 
 class Levels(Protocol):
-    """The part of traffic that knows levels."""
+    """The part of the traffic model that knows the levels of batteries."""
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return energy per robot; `level_j` is the energy in each battery."""
+        """Return energies per robot by name, in J; `level_j` is the energy in each battery."""
         ...
 
     def level_j(self, robot: int) -> float:
@@ -30,12 +30,12 @@ class Levels(Protocol):
         ...
 
     def exchange_battery(self, robot: int, level_j: float) -> None:
-        """Give a robot another battery."""
+        """Give a robot another battery, which contains `level_j`."""
         ...
 
 
 class Batteries:
-    """The batteries of all robots, each of the same kind.
+    """The batteries of all robots, which are all of the same kind.
 
     Parameters
     ----------
@@ -47,13 +47,14 @@ class Batteries:
     Attributes
     ----------
     capacity_j, least_j, reserve_j
-        Capacity, minimum level and additional reserve.
+        Capacity of a battery, minimum level and additional reserve, in J.
     enough_share
-        Level from which a robot can certainly take a task; below it, the robot is sent to charge.
+        Level (share of capacity) from which a robot has enough energy for any task, with a margin;
+        set at the start of a run.
     stranded
-        Robots that stand still with an empty battery.
+        Robots that stand still because their level fell below the minimum.
     strandings
-        Times (s) and robots of all strandings so far.
+        Time (s) and robot of every stranding so far.
     """
 
     def __init__(self, given: Battery, levels: Levels) -> None:
@@ -67,7 +68,7 @@ class Batteries:
         self.strandings: list[tuple[float, int]] = []
 
     def usable_j(self, robot: int) -> float:
-        """Return the energy that a robot may use before it reaches its reserve, in J."""
+        """Return the energy of a robot above minimum level and reserve, in J; may be negative."""
         return self._levels.level_j(robot) - self.least_j - self.reserve_j
 
     def levels_j(self) -> NDArray[np.float64]:
@@ -85,28 +86,29 @@ class Batteries:
         return shares
 
     def mean_draw_w(self, now_s: float) -> float:
-        """Return the mean power of a robot since time zero, in W; 0 at time zero."""
+        """Return the mean power drawn since time zero, per robot, in W; 0 at time zero."""
         used_j = float(self._levels.energy()["ever_used_j"].mean())
         return used_j / now_s if now_s > 0 else 0.0
 
     def exchange(self, robot: int, share: float) -> None:
-        """Give a robot a battery with this level."""
+        """Give a robot a battery with a level of `share` of the capacity."""
         self._levels.exchange_battery(robot, share * self.capacity_j)
 
     def strand(self, robot: int, now_s: float) -> None:
-        """Record that a robot is stranded without energy."""
+        """Record that a robot is stranded, as its level fell below the minimum."""
         self.stranded.add(robot)
         self.strandings.append((now_s, robot))
 
     def rescue(self, robot: int) -> None:
-        """Restore energy to a stranded robot."""
+        """End the stranding of a robot; raise its level to `rescue_share` if it is lower."""
         self.stranded.discard(robot)
         self.exchange(robot, max(self.given.rescue_share, self.share(robot)))
 
     def seconds(self, from_share: float, to_share: float, power_w: float) -> float:
-        """Return the charging time from one level to another, in s; infinite if it is impossible.
+        """Return the charging time from one level to another, in s; inf if it is never reached.
 
-        The inverse of `Battery::charged` in rmfs/traffic/src/energy.rs.
+        Levels are shares of the capacity. This is the inverse of `Battery::charged` in
+        rmfs/traffic/src/energy.rs.
         """
         if to_share <= from_share:
             return 0.0
@@ -123,7 +125,7 @@ class Batteries:
         return constant + (1 - bend) / pace * log((1 - begun) / (1 - to_share))
 
     def charged(self, from_share: float, power_w: float, seconds: float) -> float:
-        """Return the level after some time at a charger, as a share."""
+        """Return the level after some time at a charger; levels are shares of the capacity."""
         bend = self.given.taper_from_share
         pace = power_w / self.capacity_j
         constant_for = max((bend - from_share) / pace, 0.0)
@@ -136,6 +138,12 @@ class Batteries:
 
 
 def initial_j(given: Battery, robots: int, draw: Callable[[int], NDArray[np.float64]]) -> Any:
-    """Draw the initial energy in each battery, shape (R,), in J."""
+    """Draw the initial energy in each battery, shape (R,), in J.
+
+    Parameters
+    ----------
+    draw
+        Function that draws as many numbers as its argument, uniformly from [0, 1).
+    """
     low, high = given.initial_least_share, given.initial_most_share
     return (low + (high - low) * draw(robots)) * given.capacity_wh * J_PER_WH

@@ -21,7 +21,7 @@ class ChargeTask(VisitTask):
     Attributes
     ----------
     until_share
-        Battery level at which the robot leaves a plug-in place.
+        Battery level (share of capacity) at which the robot leaves a plug-in place.
     """
 
     kind = "charge"
@@ -29,7 +29,7 @@ class ChargeTask(VisitTask):
     until_share: float = 1.0
 
     def started(self, world: Keeps) -> Task:
-        """Register with the station."""
+        """Register with the station; return the task."""
         return world.start_charge(self)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
@@ -45,7 +45,13 @@ class RecoveryStation(Station[ChargeTask]):
     """A station where robots get energy; its tasks are indexed by robot, not by pod."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
-        """Check that the tasks are those of the robots."""
+        """Check that the tasks are those of the robots.
+
+        Raises
+        ------
+        AssertionError
+            If they are not.
+        """
         for robot, task in self.tasks.items():
             if (task.robot, task.station, robots[robot].task) != (robot, self.index, task):
                 raise AssertionError(f"inconsistent world: tasks of station {self.index}")

@@ -49,15 +49,15 @@ class Inventory:
     contained, available
         Units per SKU and pod, shape (K, P): rows are contiguous, since rules compare few SKUs over
         all pods.
-    load
-        Space of stored units plus promised space, per pod, shape (P,).
+    used, promised, load
+        Space units of the units contained, those promised, and their sum, per pod, shape (P,).
     inbound
         Available units on the pods at, or on their way to, each pick station, shape (S, K).
     uncommitted
         Available units minus ordered units that are not bound yet, per SKU, shape (K,). Negative
         only if orders exceed the stock.
     free_stock
-        As `uncommitted`, but without the demand of orders in the backlog, shape (K,).
+        As `uncommitted`, but without subtracting open units of orders in the backlog, shape (K,).
     ordered
         Units ordered since time zero, shape (K,).
     wanted
@@ -105,7 +105,8 @@ class Inventory:
     def skus_on(self) -> NDArray[np.int32]:
         """The SKUs that each pod contains, in any order, padded with K, shape (P, M).
 
-        With K + 1 weights, the last of them 0, `weights[skus_on].sum(axis=1)` is a sum per pod.
+        With K + 1 weights, the last of them 0, `weights[skus_on].sum(axis=1)` is the sum over the
+        SKUs of each pod.
         """
         return read_only(self._skus_on)
 
@@ -115,7 +116,7 @@ class Inventory:
         return skus
 
     def stock(self, pod: int, sku: int, units: int) -> None:
-        """Put units on a pod without a promise: the stock at time zero."""
+        """Put units on a pod for which no space was promised, such as the stock at time zero."""
         space = units * self._unit_space_list[sku]
         before = self._contained.item(sku, pod)
         if not before and units:
@@ -152,25 +153,25 @@ class Inventory:
         self.promised_space -= space
 
     def store(self, pod: int, sku: int, units: int) -> None:
-        """Store a bundle that was promised to a pod."""
+        """Put units on a pod in space that was promised to them."""
         self.withdraw(pod, units * self._unit_space_list[sku])
         self.stock(pod, sku, units)
 
     def demand(self, sku: int, units: int) -> None:
-        """Commit stock to a new order in the backlog."""
+        """Count units of a new order in the backlog as ordered, wanted and not uncommitted."""
         self._uncommitted[sku] -= units
         self._wanted[sku] += units
         self._ordered[sku] += units
 
     def undemand(self, sku: int, units: int) -> None:
-        """Withdraw the demand of an order in the backlog."""
+        """Withdraw units from an order in the backlog; they still count as ordered."""
         self._uncommitted[sku] += units
         self._wanted[sku] -= units
 
     def commit(self, sku: int, units: int) -> None:
-        """Commit stock to an order at a station, or to which a pod was bound.
+        """Subtract units from `free_stock`: for an order at a station, or as a pod was bound to it.
 
-        A negative number reverses it.
+        A negative number adds them again.
         """
         self._free_stock[sku] -= units
 
@@ -191,14 +192,14 @@ class Inventory:
             self._inbound[station, sku] -= units
 
     def unbind(self, pod: int, sku: int, units: int) -> None:
-        """Make bound units available again because their requests are not served from this pod."""
+        """Make bound units available again, as this pod is not going to serve their requests."""
         self._available[sku, pod] += units
         station = self._inbound_station[pod]
         if station >= 0:
             self._inbound[station, sku] += units
 
     def pick(self, pod: int, sku: int) -> None:
-        """Take one bound unit from a pod."""
+        """Take one unit, which is bound to a request, from a pod."""
         space = self._unit_space_list[sku]
         self._wanted[sku] -= 1
         left = self._contained.item(sku, pod) - 1
@@ -215,7 +216,7 @@ class Inventory:
         self._inbound[station] += self._available[:, pod]
 
     def end_inbound(self, pod: int) -> None:
-        """Stop counting the pod as inbound."""
+        """Stop counting the available units of a pod as inbound."""
         self._inbound[self._inbound_station[pod]] -= self._available[:, pod]
         self._inbound_station[pod] = -1
 

@@ -6,10 +6,10 @@ _MOST = 16
 
 
 class News:
-    """Notifies followers of the numbers of things that have changed.
+    """Notifies followers of the numbers of things that have changed, such as stations.
 
-    An exchanged controller does not unsubscribe, so the number of followers is limited; a follower
-    that was dropped and takes news again is notified of everything.
+    An exchanged controller does not unsubscribe, so the number of followers is limited. To a
+    follower that was dropped and takes news again, everything counts as changed.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class News:
         self._followers: list[Follower] = []
 
     def tell(self, number: int) -> None:
-        """Notify all followers of a change."""
+        """Notify all followers that the thing of this number has changed."""
         for follower in self._followers:
             follower.changed.add(number)
 
@@ -59,7 +59,7 @@ class Follower:
         self.changed = set(range(self._news.count))
 
     def take(self) -> set[int]:
-        """Return the numbers of everything that has changed since the last call."""
+        """Return the numbers of the things that have changed since the last call."""
         if not self._news.keeps(self):
             self._news.keep(self)
             self.begin_anew()

@@ -27,17 +27,17 @@ class OrderOperations(WorldState):
         self.orders_created += 1
 
     def cut_order(self, order: Order, keep: Mapping[int, int]) -> None:
-        """Reduce the units of an order in the backlog; without any left, it is cancelled.
+        """Reduce the units of an order in the backlog; an order without any left is cancelled.
 
         Parameters
         ----------
         keep
-            Remaining units of each SKU.
+            Remaining units of each SKU; 0 for the others.
 
         Raises
         ------
         ValueError
-            If it is not in the backlog, is in a pool, or has been split.
+            If the order is not in the backlog, is in a pool, or has been split.
         """
         if order not in self.orders or order.queued_at >= 0 or order.parts:
             raise ValueError(f"order {order.index} cannot lose units")
@@ -54,7 +54,12 @@ class OrderOperations(WorldState):
     def queue_order(self, order: Order, station: int) -> None:
         """Add an order of the backlog to the pool of a pick station.
 
-        It needs no slot and keeps its place in the backlog, but pods can be bound to it.
+        The order needs no slot and stays in the backlog, but its requests can be bound to pods.
+
+        Raises
+        ------
+        ValueError
+            If the order is in a pool already, or not in the backlog.
         """
         if order.queued_at >= 0:
             raise ValueError(f"order {order.index} is queued at station {order.queued_at} already")
@@ -74,7 +79,7 @@ class OrderOperations(WorldState):
                 self.unqueue_order(order)
 
     def unqueue_order(self, order: Order) -> None:
-        """Remove an order from its pool; its requests bound to pods are open again."""
+        """Remove an order from its pool; its requests that were bound to pods are open again."""
         station = self.pick_stations[order.queued_at]
         for task in station.tasks.values():
             self._give_back(task, [pick for pick in task.picks if pick.line.order is order])
@@ -121,8 +126,9 @@ class OrderOperations(WorldState):
     def assign_lines(self, order: Order, station: int, skus: Collection[int]) -> Order:
         """Assign some lines of an order of the backlog to a pick station, which splits the order.
 
-        They join the part of the order at the station, or become a part of their own, which takes a
-        slot. If no other lines are left and there is no such part, the order itself takes the slot.
+        The lines join the part of the order at the station, or become a part of their own, which
+        takes a slot. If they are all that is left and there is no such part, the order itself takes
+        the slot.
 
         Returns
         -------
@@ -132,8 +138,8 @@ class OrderOperations(WorldState):
         Raises
         ------
         ValueError
-            If the lines do not belong to an order of the backlog that is in no pool, or if they
-            need a slot and the station is inactive or has none free.
+            If the order has no such lines, is not in the backlog or is in a pool, or if a slot is
+            needed and the station is inactive or has none free.
         """
         target = self.pick_stations[station]
         lines = tuple(line for line in order.lines if line.sku in skus)
@@ -185,7 +191,13 @@ class OrderOperations(WorldState):
         Returns
         -------
         Order or None
-            The customer's order, if it is now complete; None if other lines of it are still open.
+            The customer's order, if it is now complete; None if other parts of it are at stations
+            or in the backlog.
+
+        Raises
+        ------
+        ValueError
+            If not all its units have been picked.
         """
         if order.unpicked_units:
             raise ValueError(f"order {order.index} lacks {order.unpicked_units} units")

@@ -1,6 +1,7 @@
 """Pick orders, their lines, and replenishment bundles.
 
-Times are simulated seconds, nan until the event has happened; indices are -1 until decided.
+Times are simulated seconds, nan until the event has happened; indices of pods and stations are -1
+until they are decided.
 """
 
 from __future__ import annotations
@@ -18,17 +19,16 @@ class OrderLine:
     """Units of one SKU in one order.
 
     Each unit is an extract request. A request is *open* until a unit on a certain pod is bound to
-    it. This happens late: when a robot gets the task to bring that pod, or while the pod is on its
-    way.
+    it, which happens when a robot gets the task to bring that pod, or later during the task.
 
     Attributes
     ----------
     units
         Number of units ordered.
     open_units
-        Requests not yet bound to a pod.
+        Number of requests not yet bound to a pod.
     picked_units
-        Requests fulfilled.
+        Number of requests fulfilled.
     """
 
     order: Order
@@ -51,9 +51,9 @@ class Order:
     index
         Ordinal of arrival.
     lines
-        One per SKU, all SKUs different.
+        The order lines, all of different SKUs.
     open_units, unpicked_units
-        Sums over the lines.
+        Number of requests not yet bound to a pod, and of units not yet picked, over all lines.
     station
         The pick station, or -1 while in the backlog.
     queued_at
@@ -65,15 +65,15 @@ class Order:
     slots_taken
         Slots currently occupied by the order and its parts.
     in_file
-        Its position among the orders of a file, or -1.
+        Position among the orders of a file, from 0; -1 if it is not from a file.
     cancelled_s
-        When it was cancelled because stock could not serve it.
+        Time at which it was cancelled because stock could not serve it.
     units_cut
-        Ordered units that are not delivered.
+        Number of ordered units that are not delivered.
     priority
-        Its class, or -1 in scenarios without classes (`orders.due.mode = "classes"`).
+        Number of its class; -1 in scenarios without classes (`orders.due.mode = "classes"`).
     weight
-        Weight of its lateness, by its class.
+        Weight of its lateness, given by its class.
     """
 
     index: int
@@ -98,7 +98,7 @@ class Order:
 
     @property
     def all_lines(self) -> tuple[OrderLine, ...]:
-        """Its lines as ordered by the customer, including those of its parts."""
+        """Its own lines and those of its parts: all lines that the customer ordered."""
         return sum((part.lines for part in self.parts), self.lines)
 
     def take_over(self, lines: tuple[OrderLine, ...]) -> None:
@@ -113,12 +113,12 @@ class Order:
             order.unpicked_units += sign * sum(line.open_units for line in lines)
 
     def cut(self, keep: Mapping[int, int]) -> None:
-        """Reduce unbound units of lines; lines without units are removed.
+        """Reduce the units of lines, none of which may be bound; lines without units are removed.
 
         Parameters
         ----------
         keep
-            Remaining units of each SKU.
+            Remaining units of each SKU; 0 for the others.
         """
         for line in self.lines:
             left = keep.get(line.sku, 0)
@@ -136,7 +136,7 @@ class Order:
         skus: tuple[int, ...],
         units: tuple[int, ...],
     ) -> Order:
-        """Make an order with a line for each SKU."""
+        """Create an order with a line for each SKU and its number of units."""
         total = sum(units)
         order = cls(index, created_s, due_s, (), total, total)
         order.lines = tuple(
@@ -164,9 +164,9 @@ class Bundle:
     station
         The replenishment station with reserved space, or -1.
     stored_s
-        When its transfer into the pod started.
+        Time at which its transfer into the pod started.
     in_file
-        Its position among the bundles of a file, or -1.
+        Position among the bundles of a file, from 0; -1 if it is not from a file.
     """
 
     index: int

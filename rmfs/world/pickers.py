@@ -47,15 +47,15 @@ class Picker:
     station
         Current station, or -1 while away.
     since_s
-        Time at which the picker came there, in s.
+        Time at which the picker came to the current or last station, in s.
     units
         Units picked since time zero.
     fatigue
         Fatigue at `told_s`, 0 to 1; `Staff.fatigue` returns the current value.
     told_s
-        Time of `fatigue`.
+        Time to which `fatigue` refers, in s.
     busy_until_s
-        When the last unit started will be finished.
+        Time at which the unit started last is finished, in s.
     """
 
     index: int
@@ -78,19 +78,19 @@ class Handled(NamedTuple):
     picker
         Index of the picker.
     seconds
-        Time for which it occupied picker and station, rework included.
+        Time for which the unit occupied picker and station, rework included.
     robot_s
-        Time for which it occupied the robot.
+        Time for which the unit occupied the robot, in s.
     layer
         Layer of the pod, from 0 at the bottom; -1 if pods have none.
     fatigue
         Fatigue of the picker at the start.
     error, noticed
-        Whether it was picked wrongly, and whether that was corrected.
+        Whether the unit was picked wrongly, and whether this error was corrected.
     face
         Face of the pod; -1 if pods have none.
     turned
-        Whether the pod had to be turned for it; `seconds` and `robot_s` include that time.
+        Whether the pod had to be turned; `seconds` and `robot_s` include the time for turning.
     """
 
     picker: int
@@ -142,19 +142,19 @@ class Staff:
         self._unit_s = list(unit_s)
 
     def come(self, picker: Picker, now_s: float) -> None:
-        """Place a picker at the home station."""
+        """Record that a picker has come to the home station."""
         self.bring(picker, now_s)
         picker.station, picker.since_s = picker.home, now_s
         self.at_station[picker.home] = picker
 
     def leave(self, picker: Picker, now_s: float) -> None:
-        """Remove a picker; a unit that has been started is finished first."""
+        """Record that a picker has left; a unit already started counts as work until its end."""
         self.bring(picker, now_s)
         self.at_station[picker.station] = None
         picker.station = -1
 
     def begin_unit(self, picker: Picker, now_s: float, seconds: float) -> None:
-        """Record that a picker works on a unit."""
+        """Record that a picker starts a unit, which takes this time."""
         self.bring(picker, now_s)
         picker.units += 1
         picker.busy_until_s = now_s + seconds
@@ -180,14 +180,17 @@ class Staff:
         return fatigue
 
     def factor(self, picker: Picker, now_s: float) -> float:
-        """Return the factor on the time of a picker's next unit, except for its layer."""
+        """Return the factor of learning, speed and fatigue on the time of a picker's next unit."""
         made = learned(self.given.learning, picker.units) / picker.speed
         if self.given.fatigue is not None:
             made *= 1.0 + self.given.fatigue.slowdown * self.fatigue(picker, now_s)
         return made
 
     def unit_s(self, station: int, now_s: float) -> float:
-        """Return the current mean time of a unit at a station; infinite without a picker."""
+        """Return the current mean time of a unit at a station, in s; infinite without a picker.
+
+        Layers, faces and errors are left out.
+        """
         picker = self.at_station[station]
         if picker is None:
             return inf
@@ -196,7 +199,10 @@ class Staff:
     def least_s(self, station_s: float) -> float:
         """Return a lower bound of the time of a unit, in s; 0 if there is no positive bound.
 
-        The argument is the time of a unit according to the layout.
+        Parameters
+        ----------
+        station_s
+            Time of a unit according to the layout.
         """
         return self.unit_times.least_s(station_s) * least_factor(self.given)
 

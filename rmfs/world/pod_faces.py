@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 class PodFaces(PodParts):
-    """The face on which every unit of a pod lies.
+    """The faces on which the units of each pod lie.
 
-    A bundle goes to the face with most room; what does not fit there goes to the next face.
+    A bundle goes to the face with most room; units that do not fit there go to the next face.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class PodFaces(PodParts):
         return self.roomiest_first(pod)
 
     def take(self, pod: int, sku: int, shown: int) -> int:
-        """Take a unit from the face shown, or else from the face with most units; return the face.
+        """Take a unit of a SKU; return its face: the one shown, or else the one with most units.
 
         Parameters
         ----------

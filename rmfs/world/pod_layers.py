@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class PodLayers(PodParts):
-    """The layer in which every unit of a pod lies.
+    """The layers in which the units of each pod lie.
 
     Parameters
     ----------
@@ -43,14 +43,14 @@ class PodLayers(PodParts):
         self._class = _classes(popularity, layers).tolist()
 
     def take(self, pod: int, sku: int) -> int:
-        """Take a unit from the fastest layer that has one; return the layer."""
+        """Take a unit of a SKU from the fastest layer that has one; return the layer."""
         lying = self._units[pod, sku]
         layer = next(layer for layer in self._by_time if lying[layer])
         self._take_from(pod, sku, layer)
         return layer
 
     def filled(self, pod: int, sku: int) -> list[int]:
-        """Return the layers in the order in which they are filled."""
+        """Return the layers in the order in which they are filled with a SKU."""
         if self._given.storing == "golden":
             return self._by_time
         if self._given.storing == "popular":

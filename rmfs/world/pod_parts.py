@@ -17,7 +17,7 @@ _HAIR = 1e-9
 
 
 class PodParts:
-    """The part in which every unit of a pod lies.
+    """The parts in which the units of each pod lie.
 
     Each part has an equal share of the pod's capacity. Units that fit into no single part, although
     the pod has room for them in total, go to the part with most room.
@@ -50,7 +50,7 @@ class PodParts:
         """Return the parts in the order in which they are filled with a SKU."""
 
     def put(self, pod: int, sku: int, units: int) -> None:
-        """Store units of a SKU."""
+        """Store units of a SKU in a pod."""
         space, used = self._space[sku], self.used[pod]
         lying = self._units.setdefault((pod, sku), [0] * len(used))
         for part in self.filled(pod, sku):
@@ -70,7 +70,7 @@ class PodParts:
         return sum(self._units.get((pod, sku), ()))
 
     def roomiest_first(self, pod: int) -> list[int]:
-        """Sort the parts of a pod, that with most room first."""
+        """Return the parts of a pod, the one with most room first, ties by number."""
         return [int(part) for part in np.argsort(self.used[pod], kind="stable")]
 
     def _take_from(self, pod: int, sku: int, part: int) -> None:

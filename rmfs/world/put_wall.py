@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False)
 class Tote:
-    """The part of an order that left a pick station together.
+    """A tote with an order, or a part of one, that has left its pick station.
 
     Attributes
     ----------
@@ -27,11 +27,12 @@ class Tote:
     station
         The pick station.
     released_s
-        Time at which it left the station.
+        Time in s at which the tote left the station.
     arrived_s
-        Time at which it reached the wall; nan while on its way, and if it never goes there.
+        Time in s at which the tote reached the wall; nan while it is on its way, and if it does not
+        go there.
     by_hand
-        Whether it was carried there by hand after its station had waited too long.
+        Whether the tote was carried to the wall by hand because it had waited too long.
     """
 
     parcel: Parcel
@@ -54,13 +55,13 @@ class Parcel:
     picked
         Whether these are all of its totes.
     standing
-        Totes that have reached the wall.
+        Number of totes that have reached the wall.
     kept
-        Slots of the wall that it occupies or has reserved.
+        Number of slots of the wall that the order occupies or has reserved.
     consolidated_s
-        Time at which the last of its totes reached the wall.
+        Time in s at which the last of its totes reached the wall.
     packing_s, packed_s
-        Times at which a packer started and finished.
+        Times in s at which a packer started and finished.
     """
 
     order: Order
@@ -74,7 +75,7 @@ class Parcel:
 
     @property
     def is_split(self) -> bool:
-        """Whether it leaves pick stations in more than one tote."""
+        """Whether the order leaves the pick stations in more than one tote."""
         return len(self.totes) > 1 or not self.picked
 
 
@@ -87,9 +88,9 @@ class HeldTote:
     order
         The order or part that occupies the slot of the station.
     since_s
-        Time at which it was ready to leave.
+        Time in s at which it was ready to leave.
     timer
-        Identifies the time at which it is carried away by hand.
+        Number of the scheduled event of carrying it away by hand; -1 if there is none.
     """
 
     order: Order
@@ -98,23 +99,23 @@ class HeldTote:
 
 
 class PutWall:
-    """State of the wall; simulated by `rmfs.simulation.packing`.
+    """State of the put wall; simulated by `rmfs.simulation.packing`.
 
     Parameters
     ----------
     slots
         Number of slots; None: unlimited.
     slot_per_part
-        Whether each part of an order takes a slot, or all its parts share one.
+        Whether each part of an order takes a slot; otherwise all its parts share a slot.
 
     Attributes
     ----------
     parcels
-        Orders that have left the pick stations in part and are not packed yet.
+        By index of the order, parcels of which a tote has left its station, until they are packed.
     kept
-        Slots occupied, or reserved for totes on their way.
+        Number of slots occupied, or reserved for totes on their way.
     travelling
-        Totes on their way.
+        Number of totes on their way.
     held
         Totes that cannot leave their pick stations, longest waiting first.
     orders_packed
@@ -138,17 +139,19 @@ class PutWall:
         order
             Index of the order.
         last
-            Whether no tote follows.
+            Whether this tote is the last of the order.
         """
         return self.slots is None or self.kept + self._more(order, last) <= self.slots
 
     def release(self, order: Order, station: int, now_s: float, *, last: bool) -> Tote:
-        """Send a tote from its pick station to the wall; it reserves the slot that it needs.
+        """Create a tote that leaves its pick station, and reserve the slot that it needs.
 
         Parameters
         ----------
         order
             The customer's order.
+        last
+            Whether this tote is the last of the order.
         """
         more = self._more(order.index, last)
         parcel = self.parcels.setdefault(order.index, Parcel(order))
@@ -161,14 +164,14 @@ class PutWall:
         return tote
 
     def pass_by(self, tote: Tote, now_s: float) -> Parcel:
-        """Pack an order in a single tote where it was picked; return the parcel."""
+        """Record that an order in a single tote is packed without the wall; return the parcel."""
         self.travelling -= 1
         tote.parcel.packing_s = now_s
         self.pack(tote.parcel, now_s)
         return tote.parcel
 
     def arrive(self, tote: Tote, now_s: float) -> bool:
-        """Record the arrival of a tote; return whether its order is complete and taken out."""
+        """Record the arrival of a tote; return whether its order is now complete and taken out."""
         parcel = tote.parcel
         tote.arrived_s = now_s
         self.travelling -= 1

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 class OpenRequests:
-    """Units needed at one station and not yet bound to a pod.
+    """Units needed by the orders at one station, or in its pool, and not yet bound to a pod.
 
     Parameters
     ----------
     need
         Open units per SKU, shape (K,): the station's row of a matrix, which is updated here.
     news, station
-        Notified when the first request is added or the last one removed, and for which station.
+        Notifies of this station when the first request is added or the last one removed.
 
     Attributes
     ----------
@@ -32,8 +32,8 @@ class OpenRequests:
     units
         Open units in total.
     version
-        Increases whenever requests are added: a rule that found nothing to do need not look again
-        before that.
+        Increases whenever requests are added; until then, a rule that found nothing to do need not
+        look again.
     """
 
     def __init__(self, need: NDArray[np.int32], news: News, station: int) -> None:
@@ -76,7 +76,7 @@ class OpenRequests:
         self._count_from(before)
 
     def reopen(self, line: OrderLine) -> None:
-        """Reopen one request of a line, which is then served first."""
+        """Reopen one request of a line; a line without open requests goes to the front."""
         if not line.open_units:
             self.lines.setdefault(line.sku, deque()).appendleft(line)
         line.open_units += 1
@@ -87,12 +87,12 @@ class OpenRequests:
         self._count_from(self.units - 1)
 
     def take(self, sku: int, at_most: int) -> list[OrderLine]:
-        """Close requests for a SKU, first come first served.
+        """Remove open requests for a SKU, those of the first lines first, at most `at_most`.
 
         Returns
         -------
         list of OrderLine
-            The line of each closed request, at most `at_most`.
+            The line of each request removed.
         """
         waiting = self.lines.get(sku)
         taken: list[OrderLine] = []
@@ -113,7 +113,7 @@ class OpenRequests:
         return taken
 
     def take_line(self, line: OrderLine, at_most: int) -> int:
-        """Close at most `at_most` open requests of one line; return how many."""
+        """Remove at most `at_most` open requests of one line; return how many."""
         count = min(line.open_units, at_most)
         if count:
             line.open_units -= count

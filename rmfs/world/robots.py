@@ -17,10 +17,10 @@ class Robot:
     Attributes
     ----------
     tier
-        Its tier, or that at the end of its current drive.
+        Tier of `waypoint`.
     waypoint
-        Where its current drive ends, or where it stands: a station's waypoint, a place, or its
-        initial waypoint.
+        Waypoint at which its current drive ends, or else at which it stands: a station's waypoint,
+        a place, or its initial waypoint.
     pod
         The pod it carries, from the start of lifting to the end of setting down; or -1.
     task

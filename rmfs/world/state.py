@@ -1,4 +1,4 @@
-"""The state of a warehouse: its objects, their places, and counts."""
+"""The state of a warehouse: stock, orders, stations and robots, and counts of events."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class WorldState:
     Attributes
     ----------
     now_s
-        Current simulated time.
+        Current simulated time in s.
     inventory, storage
         Stock on pods, and where the pods are.
     orders, bundles
@@ -45,27 +45,30 @@ class WorldState:
     pick_stations, replenishment_stations
         The stations, in the order of the layout.
     slot_news
-        Notifies of pick stations that were switched on or off, that a robot reached or left, or
-        that gained or lost an order.
+        Notifies of pick stations that are switched on or off, that a robot reaches or leaves, or
+        that gain or lose an order.
     work_news
-        Notifies of stations, in the common numbering, that gained open work or have none left.
+        Notifies of stations, in the common numbering, that gain open work or may have none left.
     work_stations
         All pick and replenishment stations, to which rules assign work, in the common numbering.
     stations
         All stations, including the `other_stations` of other kinds, which come last.
     need
-        Open units per pick station and SKU, shape (S, K).
+        Open units of the orders at each pick station, per SKU, shape (S, K).
     queued_need
-        The same for queued orders, shape (S, K).
+        Open units of the orders in the pool of each pick station, per SKU, shape (S, K).
     lines
-        Order lines of the open orders per pick station and SKU, picked or not, shape (S, K).
+        Number of order lines of the open orders per pick station and SKU, picked or not, shape
+        (S, K).
     bundles_waiting
-        Assigned bundles not yet part of a task, per replenishment station and pod, shape (S, P).
+        Number of assigned bundles not yet part of a task, per replenishment station and pod, shape
+        (S, P).
     robots
         The robots, by index.
-    asking, resting
-        Robots without a task, in the order in which they became free; and robots at rest or on
-        their way to rest.
+    asking
+        Robots without a task by index, in the order in which they became free.
+    resting
+        Robots at rest or on their way to rest by index.
     orders_created, orders_completed, bundles_created, bundles_stored, units_picked, units_stored
         Counts since time zero.
     units_initial
@@ -77,13 +80,13 @@ class WorldState:
     order_redraws
         Number of redraws because stock could not serve a drawn order line.
     orders_short
-        Orders that arrived although stock could not serve them.
+        Number of orders that arrived although stock could not serve them.
     batteries
         The robots' batteries; None if energy is unlimited.
     put_wall
-        The put wall for parts of split orders; None if orders are complete when picked.
+        The put wall for parts of split orders; None if the scenario has no packing.
     staff
-        The pickers at the pick stations; None if every unit takes the same time.
+        The pickers at the pick stations; None in scenarios without pickers.
     split_orders
         Split orders with units still to be picked, by index.
     tasks_dropped
@@ -164,5 +167,5 @@ class WorldState:
 
     @property
     def load(self) -> float:
-        """Space units stored, on their way to pods, or waiting; each bundle counts once."""
+        """Space units of the stock on pods and of all bundles that are not stored yet."""
         return self.inventory.stored_space + self.unstored_space

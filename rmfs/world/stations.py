@@ -34,11 +34,11 @@ class Station(Generic[T]):
     number
         Number among the stations of its kind.
     waypoint, tier
-        Waypoint and tier of the robot that is being served.
+        Waypoint and tier at which robots are served.
     visits
-        Number of robots that have reached the head so far.
+        How often a robot has reached the head of the queue so far.
     tasks
-        The task of each pod that is to be, or is being, served here, in order of creation.
+        By pod, the tasks in which a pod is to be, or is being, served here, in order of creation.
     """
 
     def __init__(self, index: int, number: int, waypoint: int, tier: int) -> None:
@@ -72,7 +72,7 @@ class Station(Generic[T]):
         self.changed()
 
     def changed(self) -> None:
-        """Record a change of its state or contents; a kind may notify others."""
+        """React to a change of its state or contents; by default do nothing."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
         """Check the state by recounting; a kind adds its own checks.
@@ -89,17 +89,17 @@ class Station(Generic[T]):
 
     @property
     def has_work(self) -> bool:
-        """Whether work is assigned to it that is not finished yet."""
+        """Whether it has unfinished work; by default, whether it has tasks."""
         return bool(self.tasks)
 
     @property
     def has_open_work(self) -> bool:
-        """Whether work is assigned to it for which no pod is under way."""
+        """Whether it has work for which no pod is under way; by default never."""
         return False
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Version number that changes with new work."""
+        """Version of its work, which changes when work is added; by default constant."""
         return ()
 
 
@@ -155,12 +155,12 @@ class PickStation(Station[PickTask]):
 
     @property
     def has_open_work(self) -> bool:
-        """Whether there are requests for which no pod is under way."""
+        """Whether there are requests, of its orders or its pool, for which no pod is under way."""
         return self.requests.units > 0 or self.queued_requests.units > 0
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Version number that changes with new requests, and when a queued order can get a slot."""
+        """Version that changes with new requests, and when a queued order can get a slot."""
         if not self.queued:
             return (self.requests.version,)
         return self.requests.version, self.queued_requests.version, self.free_slots > 0
@@ -172,7 +172,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
     Attributes
     ----------
     capacity
-        Maximum space units of assigned bundles.
+        Maximum of `used`.
     used
         Space units of the bundles assigned, or reserved by ROA, whose transfer has not started.
     bundles
@@ -208,7 +208,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
 
     @property
     def has_work(self) -> bool:
-        """Whether bundles are assigned here whose transfer has not begun."""
+        """Whether bundles are assigned here, or reserved by ROA, whose transfer has not begun."""
         return self.used > 0
 
     @property
@@ -218,7 +218,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Version number that changes with new bundles."""
+        """Version that changes with new bundles."""
         return (self.version,)
 
     def add(self, bundle: Bundle) -> None:

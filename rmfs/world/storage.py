@@ -41,7 +41,7 @@ class Storage:
     place_of
         Waypoint at which each pod is stored, or -1 while it is carried.
     claimed_by
-        Robot whose task each pod belongs to, or -1.
+        Robot to whose task each pod belongs, or -1.
     kept_by
         Robot that keeps each waypoint, or -1.
     pod_waypoint
@@ -54,8 +54,8 @@ class Storage:
     is_stored
         Pods at a place, not on a robot, shape (P,).
     is_at_hand
-        Available pods: stored, unclaimed, and with no robot beneath them except one without work,
-        shape (P,).
+        Available pods: stored, unclaimed, and at a place that no robot keeps except one without
+        work, shape (P,).
     version
         Increases whenever a pod becomes available.
     """
@@ -107,13 +107,13 @@ class Storage:
             self._refresh(self.place_of[pod])
 
     def release(self, pod: int) -> None:
-        """Make a pod available to all robots."""
+        """End the claim on a pod, so that any robot may claim it."""
         self.claimed_by[pod] = -1
         if self.place_of[pod] >= 0:
             self._refresh(self.place_of[pod])
 
     def keep(self, robot: Robot, place: int) -> None:
-        """Reserve a storage place for a robot that is to stand there.
+        """Reserve a storage place for a robot that is to stand there; ignore other waypoints.
 
         Raises
         ------
@@ -135,8 +135,8 @@ class Storage:
         Parameters
         ----------
         rest
-            Waypoint at which the robot's current plan ends. A place to which it has been sent but
-            has no plan yet is kept as well, and so is the place of its task.
+            Waypoint at which the robot's current plan ends. The robot also keeps the place to which
+            it has been sent, even without a plan yet, and the place of its task.
         """
         goal = robot.task.place if robot.task is not None else -1
         left = [place for place in robot.places if place not in (robot.waypoint, rest, goal)]

@@ -21,7 +21,7 @@ class Serves(Protocol):
     """Function that returns whether there is work for a pod at a station."""
 
     def __call__(self, pod: int, station: int) -> bool:
-        """Return whether there is work."""
+        """Return whether there is work for the pod at the station."""
         ...
 
 
@@ -34,36 +34,36 @@ class Keeps(Protocol):
     stations: list[Any]
 
     def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
-        """Start to bring a pod to a pick station."""
+        """Start the task of bringing a pod to a pick station."""
         ...
 
     def start_replenish(self, robot: Robot, pod: int, station: int) -> ReplenishTask:
-        """Start to bring a pod to a replenishment station."""
+        """Start the task of bringing a pod to a replenishment station."""
         ...
 
     def start_visit(self, task: VisitTask) -> VisitTask:
-        """Start to bring a pod to a station of another kind."""
+        """Start the task of bringing a pod to a station of another kind."""
         ...
 
     def start_charge(self, task: Any) -> Task:
-        """Start to go to an energy station."""
+        """Start the task of going to an energy station."""
         ...
 
     def start_park(self, robot: Robot, place: int) -> Task:
-        """Start to store a pod."""
+        """Start the task of storing the carried pod at a place."""
         ...
 
     def start_reposition(self, robot: Robot, pod: int, place: int) -> Task:
-        """Start to move a stored pod."""
+        """Start the task of moving a stored pod to another place."""
         ...
 
     def start_rest(self, robot: Robot, place: int) -> Task:
-        """Start to rest."""
+        """Start the task of resting at a place."""
         ...
 
 
 class Pick(NamedTuple):
-    """A unit to be picked, and whether it was bound while the pod was on its way."""
+    """A unit to be picked, and whether it was bound after the task of its pod had begun."""
 
     line: OrderLine
     late_bound: bool
@@ -79,12 +79,14 @@ class Task:
         Name of the kind in tables, traces and the viewer.
     rests
         Whether a robot with this task may get another one at any time.
+    robot
+        Index of the robot.
     pod
         The pod to be brought or stored; -1 for none.
     station
-        The station where the pod is served, or -1.
+        The station to which the robot goes; -1 for none.
     place
-        The waypoint where the pod is stored or the robot rests, or -1.
+        The waypoint where the pod is stored or the robot rests; -1 for none.
     """
 
     kind: ClassVar[str]
@@ -100,7 +102,7 @@ class Task:
         raise NotImplementedError
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether it could start now.
+        """Whether the task could start now.
 
         Parameters
         ----------
@@ -114,7 +116,7 @@ class Task:
 
     @property
     def stores(self) -> bool:
-        """Whether it ends when its pod stands at its place."""
+        """Whether the task ends when its pod stands at its place."""
         return self.place >= 0 and self.pod >= 0
 
     @property
@@ -125,10 +127,10 @@ class Task:
 
 @dataclass(slots=True, eq=False)
 class StationTask(Task):
-    """Bring a pod to a station, or the one already carried."""
+    """Bring an available pod, or the one already carried, to a station."""
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the pod is available and there is work for it."""
+        """Whether the pod is available or already carried, and there is work for it."""
         return _can_have(world, self) and serves(self.pod, self.station)
 
     def ended(self, world: Keeps) -> None:
@@ -150,17 +152,17 @@ class PickTask(StationTask):
     picks: deque[Pick] = field(default_factory=deque)
 
     def started(self, world: Keeps) -> Task:
-        """Bind all requests that it can serve."""
+        """Claim the pod and bind all open requests of orders at the station that it can serve."""
         return world.start_pick(world.robots[self.robot], self.pod, self.station)
 
     def ended(self, world: Keeps) -> None:
-        """Stop counting its stock as inbound."""
+        """Deregister from the station; stop counting the pod's stock as inbound."""
         StationTask.ended(self, world)
         world.inventory.end_inbound(self.pod)
 
     @property
     def can_pick(self) -> bool:
-        """Whether the order of one of its picks is at the station (others are still queued)."""
+        """Whether a pick is for an order at the station, and not in its pool."""
         return any(pick.line.order.station >= 0 for pick in self.picks)
 
 
@@ -178,7 +180,7 @@ class ReplenishTask(StationTask):
     bundles: deque[Bundle] = field(default_factory=deque)
 
     def started(self, world: Keeps) -> Task:
-        """Take all bundles that wait for the pod."""
+        """Claim the pod and take all bundles that wait for it at the station."""
         return world.start_replenish(world.robots[self.robot], self.pod, self.station)
 
 
@@ -186,7 +188,8 @@ class ReplenishTask(StationTask):
 class VisitTask(StationTask):
     """Bring a pod to a station of another kind; each kind of station derives its own class.
 
-    The controller decides on the need for a visit; it is possible if the pod is available.
+    The controller of the stations decides whether a visit is needed; it is possible if the pod is
+    available or already carried.
     """
 
     kind = "visit"
@@ -196,7 +199,7 @@ class VisitTask(StationTask):
         return world.start_visit(self)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the pod is available."""
+        """Whether the pod is available or already carried."""
         return _can_have(world, self)
 
 
@@ -211,7 +214,7 @@ class ParkTask(Task):
         return world.start_park(world.robots[self.robot], self.place)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether there is a pod, and a place for it."""
+        """Whether the robot carries a pod, and the place is chosen and empty."""
         carries = world.robots[self.robot].pod >= 0
         return carries and self.place >= 0 and world.storage.is_free(self.place)
 
@@ -227,14 +230,14 @@ class RepositionTask(Task):
         return world.start_reposition(world.robots[self.robot], self.pod, self.place)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the robot is empty, the pod available, and the place free."""
+        """Whether the robot carries nothing, the pod is available and the place empty."""
         empty = world.robots[self.robot].pod < 0
         return empty and _can_have(world, self) and world.storage.is_free(self.place)
 
 
 @dataclass(slots=True, eq=False)
 class RestTask(Task):
-    """Wait at a place."""
+    """Wait at a waypoint, usually a storage place."""
 
     kind = "rest"
     rests = True
@@ -244,7 +247,7 @@ class RestTask(Task):
         return world.start_rest(world.robots[self.robot], self.place)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the robot is empty, and no other robot keeps the place."""
+        """Whether the robot carries nothing, and no other robot keeps the place."""
         empty = world.robots[self.robot].pod < 0
         return empty and world.storage.kept_by[self.place] in (-1, self.robot)
 

@@ -24,7 +24,7 @@ def verify(world: World, orders: Iterable[Order] = ()) -> None:
     Parameters
     ----------
     orders
-        Orders that were completed, if they were kept: they are checked as well.
+        Completed orders, to be checked for open or unpicked units.
 
     Raises
     ------

@@ -25,7 +25,7 @@ class World(OrderOperations):
     # --- stock and work that appear ---------------------------------------------------------
 
     def stock(self, pods: list[int], skus: list[int], units: list[int]) -> None:
-        """Put the initial stock on the pods, one entry per bundle."""
+        """Put the initial stock on the pods: entry by entry a pod, a SKU and a number of units."""
         for pod, sku, count in zip(pods, skus, units, strict=True):
             self.inventory.stock(pod, sku, count)
         self.units_initial += sum(units)
@@ -48,7 +48,7 @@ class World(OrderOperations):
         self.bundles.promised(bundle, self.now_s)
 
     def release_bundles(self, pod: int) -> list[Bundle]:
-        """Release the bundles held back for a pod; return those that are now assigned."""
+        """Release the bundles promised to a pod; return those that are now assigned."""
         bundles = self.bundles.release(pod)
         for bundle in bundles:
             bundle.released = True
@@ -58,7 +58,7 @@ class World(OrderOperations):
         return assigned
 
     def choose_station(self, bundle: Bundle, station: int) -> bool:
-        """Reserve a station's space (choice of ROA); return whether the bundle is assigned."""
+        """Reserve station space for a bundle (choice of ROA); return whether it is now assigned."""
         target = self._replenishment_station(station)
         if bundle.station >= 0:
             raise ValueError(f"bundle {bundle.index} has station {bundle.station} already")
@@ -80,7 +80,10 @@ class World(OrderOperations):
     # --- tasks ----------------------------------------------------------------------------------
 
     def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
-        """Start the task of bringing a pod to a pick station; bind all requests it can serve."""
+        """Start the task of bringing a pod to a pick station.
+
+        All open requests of orders at the station that the pod can serve are bound to it.
+        """
         task = PickTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
         self.pick_stations[station].tasks[pod] = task
@@ -104,7 +107,7 @@ class World(OrderOperations):
     ) -> int:
         """Bind open requests of a queued order to the pod of a task; return their number.
 
-        None are bound if the pod is already at the station, as it could not serve them there.
+        None are bound if the pod is already at the head of the station's queue.
 
         Parameters
         ----------
@@ -130,13 +133,16 @@ class World(OrderOperations):
         return bound
 
     def give_back(self, task: PickTask) -> int:
-        """Reopen the requests of a task whose orders are still queued; return their number."""
+        """Reopen the bound requests of a task that are of queued orders; return their number."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)
 
     def start_replenish(self, robot: Robot, pod: int, station: int) -> ReplenishTask:
-        """Start the task of bringing a pod to a replenishment station for all its bundles there."""
+        """Start the task of bringing a pod to a replenishment station.
+
+        The task takes all bundles that wait there for the pod.
+        """
         task = ReplenishTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
         target = self._replenishment_station(station)
@@ -158,7 +164,7 @@ class World(OrderOperations):
         return task
 
     def start_charge(self, task: ChargeTask) -> ChargeTask:
-        """Start the task of going to a charger or battery swap station."""
+        """Start the task of going to a plug-in place or battery swap station."""
         self.stations[task.station].tasks[task.robot] = task
         self._set_task(self.robots[task.robot], task)
         return task
@@ -220,18 +226,18 @@ class World(OrderOperations):
         robot.pod = pod
 
     def set_down(self, robot: Robot, place: int) -> None:
-        """Record that a robot has set down its pod, which any robot may then take."""
+        """Record that a robot has set down its pod, which other robots may claim from now on."""
         pod = robot.pod
         robot.pod = -1
         self.storage.set_down(pod, place)
 
     def pick_unit(self, task: PickTask, chosen: Pick | None = None) -> Pick:
-        """Pick the next unit of a task whose order is at the station.
+        """Pick and return the next unit of a task whose order is at the station.
 
         Parameters
         ----------
         chosen
-            A unit of the task to be picked instead of the next one.
+            A unit of the task to be picked instead. Default: the next one.
         """
         picks = task.picks
         pick = picks[0] if chosen is None else chosen
@@ -250,7 +256,7 @@ class World(OrderOperations):
         return pick
 
     def store_bundle(self, task: ReplenishTask) -> Bundle:
-        """Store the next bundle of a task in its pod."""
+        """Store the next bundle of a task in its pod; return the bundle."""
         bundle = task.bundles.popleft()
         self.inventory.store(task.pod, bundle.sku, bundle.units)
         station = self._replenishment_station(task.station)
