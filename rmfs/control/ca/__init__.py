@@ -30,8 +30,8 @@ class ChargeAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield the robots to be sent to charge, and those that must leave a plug-in place."""
+        """Yield decisions: robots to be sent to charge, and robots to leave a plug-in place."""
 
     def target_share(self) -> float:
-        """Level (share of capacity) up to which a robot charges that was sent in any case."""
+        """Level (share of capacity) up to which a robot charges if it is sent in any case."""
         return 0.8

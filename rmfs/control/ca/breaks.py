@@ -40,7 +40,7 @@ class BreaksParameters(LevelParameters):
 
 
 class Breaks(ByLevel[BreaksParameters]):
-    """Sends robots to charge that become free during a break or whose level is low.
+    """Sends robots without work to charge during breaks, and robots whose level is low at any time.
 
     This is known as interim charging. If there are more robots than places, they queue.
     """
@@ -48,7 +48,7 @@ class Breaks(ByLevel[BreaksParameters]):
     parameters_model = BreaksParameters
 
     def next_event_s(self) -> float:
-        """Start of the next break."""
+        """Simulated time in s at which the next break starts; inf if there is none."""
         given, view = self.parameters, self.view
         if view.batteries is None or not given.breaks_s:
             return inf
@@ -62,7 +62,7 @@ class Breaks(ByLevel[BreaksParameters]):
         return min(start for start in starts if start > now_s) - view.time_of_day_s
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level, during a break or if the robot is low."""
+        """The upper level during a break or if the robot's level is low, else 0."""
         given = self.parameters
         time_s = (self.view.now_s + self.view.time_of_day_s) % given.cycle_s
         is_break = any(start <= time_s < end for start, end in given.breaks_s)

@@ -42,7 +42,10 @@ class ByDemandParameters(LevelParameters):
 
 
 class ByDemand(ByLevel[ByDemandParameters]):
-    """Sends robots to charge earlier while few orders arrive, to have them when many arrive."""
+    """Sends robots to charge at a higher level while few orders arrive than while many arrive.
+
+    Fewer robots then need to charge while many orders arrive.
+    """
 
     parameters_model = ByDemandParameters
     hears = frozenset({Trigger.NEW_ORDER})
@@ -61,7 +64,7 @@ class ByDemand(ByLevel[ByDemandParameters]):
         self._count += 1
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level, if the robot is below the lower level that currently applies."""
+        """The upper level if the robot is below the lower level that applies now, else 0."""
         given = self.parameters
         low = given.calm_below_share if self.is_calm() else given.below_share
         return given.until_share if share < low else 0.0
@@ -71,7 +74,10 @@ class ByDemand(ByLevel[ByDemandParameters]):
         return self.parameters.until_share
 
     def is_calm(self) -> bool:
-        """Whether few orders arrived recently; never before two windows have passed."""
+        """Whether few orders arrived in the last window; never before two windows have passed.
+
+        `calm_share` compares their rate with the mean rate since the rule was installed.
+        """
         now_s, window_s = self.view.now_s, self.parameters.window_s
         while self._arrivals and self._arrivals[0] < now_s - window_s:
             self._arrivals.popleft()

@@ -1,4 +1,4 @@
-"""Shared parts of CA rules: charge levels, choice of the place, and handing over a place."""
+"""Shared parts of CA rules: charge levels, choice of a place, and leaving it to another robot."""
 
 from __future__ import annotations
 
@@ -54,14 +54,17 @@ P = TypeVar("P", bound=PlaceParameters)
 
 
 class ByLevel(ChargeAssignment[P]):
-    """Sends robots one by one, starting with the lowest level."""
+    """Sends robots to charge one by one, those with the lowest level first."""
 
     @abstractmethod
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Level up to which a robot with level `share` should charge now; 0 if it should not."""
+        """Level up to which a robot with level `share` should charge now; 0 if it should not.
+
+        Levels are shares of the capacity.
+        """
 
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield robots to be sent, then robots that hand over their places."""
+        """Yield robots to be sent to charge, then robots that give up their places to others."""
         batteries = self.view.batteries
         if batteries is None:
             return
@@ -71,7 +74,7 @@ class ByLevel(ChargeAssignment[P]):
             yield from self._hand_over(shares, self.parameters.hand_over_share)
 
     def enough_share(self) -> float:
-        """Level from which a robot can certainly take a task."""
+        """Level (share of capacity) from which a robot has enough energy for any task."""
         batteries = self.view.batteries
         return 0.0 if batteries is None else batteries.enough_share
 

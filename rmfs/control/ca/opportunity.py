@@ -34,9 +34,10 @@ class OpportunityParameters(LevelParameters):
 
 
 class Opportunity(ByLevel[OpportunityParameters]):
-    """Lets robots charge whenever they are idle, and calls them back when there is work.
+    """Lets robots charge while they have no work, and calls them back when there is work.
 
-    A robot at rest goes to a free place. A robot whose level is low charges in any case.
+    A robot at rest goes to a free place if its level is below `idle_below_share`. A robot below
+    `below_share` charges even if there is work.
     """
 
     parameters_model = OpportunityParameters
@@ -45,7 +46,7 @@ class Opportunity(ByLevel[OpportunityParameters]):
     )
 
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield robots to be sent, and at most one to be called back."""
+        """Yield robots to be sent to charge, and at most one to be called back to work."""
         yield from super().decide()
         batteries, view = self.view.batteries, self.view
         work_waits = any(station.has_open_work for station in view.stations)
@@ -59,13 +60,16 @@ class Opportunity(ByLevel[OpportunityParameters]):
                 return
 
     def next_event_s(self) -> float:
-        """Time of the next check of robots at rest."""
+        """Simulated time in s of the next check of robots at rest; inf without batteries."""
         period_s = self.parameters.period_s
         now_s = self.view.now_s
         return inf if self.view.batteries is None else (now_s // period_s + 1) * period_s
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level, if the robot is low, or at rest while a place is free."""
+        """The upper level if the robot is below the level that applies to it, else 0.
+
+        For a robot at rest while a place is free, the level is `idle_below_share`.
+        """
         given, view = self.parameters, self.view
         free = any(not station.tasks for station in view.recovery_stations)
         low = given.idle_below_share if free and robot.index in view.resting else given.below_share

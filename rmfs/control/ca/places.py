@@ -19,12 +19,12 @@ PlaceRule = Literal["least-queued", "nearest", "soonest"]
 
 
 def has_room(view: View, station: RecoveryStation) -> bool:
-    """Whether another robot may be sent there, that is, the queue has a free place."""
+    """Whether the queue of a station has a place for another robot."""
     return len(station.tasks) < len(view.layout.stations[station.index].queue)
 
 
 def busy_s(view: View, station: RecoveryStation) -> float:
-    """Total time needed by all robots at a station or on their way there, in s."""
+    """Charging or swap time of all robots at a station or on their way there, in total, in s."""
     kind, batteries = view.layout.stations[station.index].kind, view.batteries
     if not isinstance(kind, Charger) or batteries is None:
         return len(station.tasks) * float(getattr(kind.parameters, "swap_s", 0.0))
@@ -44,16 +44,16 @@ def choose(
     full_too: bool = False,
     among: Sequence[RecoveryStation] | None = None,
 ) -> int:
-    """Choose a station for a robot; -1 if none has room.
+    """Choose a station for a robot; -1 if none has room or the chosen one cannot be reached.
 
     Parameters
     ----------
     rule
         `least-queued`: fewest robots there and on their way, then the nearest. `nearest`: shortest
-        unhindered time, then the fewest robots. `soonest`: least time until all robots there and on
-        their way have finished, then the nearest.
+        unhindered time, then the fewest robots. `soonest`: least charging or swap time of all
+        robots there and on their way, then the nearest.
     full_too
-        Whether stations with a full queue count, so that the robot may have to wait outside.
+        Whether stations with a full queue are considered; the robot may have to wait outside.
     among
         The stations to choose from. Default: all.
     """

@@ -20,7 +20,7 @@ class Threshold(ByLevel[LevelParameters]):
     parameters_model = LevelParameters
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level, if the robot is below the lower one."""
+        """The upper level if the robot is below the lower one, else 0."""
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 
@@ -42,7 +42,7 @@ class ToFull(ByLevel[ToFullParameters]):
     parameters_model = ToFullParameters
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """A full battery, if the robot is below the level."""
+        """The level that counts as full if the robot is below the threshold, else 0."""
         return self.target_share() if share < self.parameters.below_share else 0.0
 
     def target_share(self) -> float:

@@ -18,10 +18,11 @@ P = TypeVar("P", bound=Parameters)
 
 
 class MethodManagement(Controller[P]):
-    """Decides which controllers are replaced, by which, and when; it is asked before all others.
+    """Decides which controllers are replaced by which others, and when.
 
-    Commitments of a controller (bundles promised to pods, robots with tasks) are part of the world,
-    so that a successor continues where its predecessor stopped.
+    It is asked before all other controllers. Commitments of a controller (bundles promised to pods,
+    robots with tasks) are part of the world, so that a successor continues where its predecessor
+    stopped.
     """
 
     problem = Problem.MM
@@ -33,7 +34,9 @@ class MethodManagement(Controller[P]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check, when a file is read, that rules can be combined after every exchange.
+        """Check, when a file is read, that rules can be combined after exchanges.
+
+        By default nothing is checked.
 
         Parameters
         ----------

@@ -39,9 +39,9 @@ class RandomParameters(Parameters):
 
 
 class RandomExchange(MethodManagement[RandomParameters]):
-    """Installs an alternative drawn from a list after each period, all equally likely.
+    """After each period, installs an alternative drawn from a list, all equally likely.
 
-    It may be the one that is already installed.
+    The alternative drawn may already be installed; its rules then start anew.
     """
 
     parameters_model = RandomParameters
@@ -52,7 +52,7 @@ class RandomExchange(MethodManagement[RandomParameters]):
         self._periods = 1
 
     def decide(self) -> Iterator[Exchange]:
-        """Yield one alternative when a period has passed."""
+        """Yield the exchanges of one alternative for each period that has passed."""
         while self.next_event_s() <= self.view.now_s:
             self._periods += 1
             alternatives = self.parameters.alternatives
@@ -60,12 +60,18 @@ class RandomExchange(MethodManagement[RandomParameters]):
                 yield Exchange(choice)
 
     def next_event_s(self) -> float:
-        """Time at which the present period ends."""
+        """Simulated time in s at which the current period ends."""
         return self._start_s + self._periods * self.parameters.period_s
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check that alternatives can be combined with the others in any sequence of draws."""
+        """Check that each alternative can be combined with the initial controllers.
+
+        Raises
+        ------
+        InputError
+            If it cannot, or if a rule of it is a dummy or decides further problems.
+        """
         given = choices[Problem.MM].parameters
         assert isinstance(given, RandomParameters)
         for number, entry in enumerate(given.alternatives):

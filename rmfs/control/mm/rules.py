@@ -31,7 +31,7 @@ class Rules(RuleTables):
         return self
 
     def choices(self) -> list[Choice]:
-        """The new controllers, in the order of the problems."""
+        """Return the rules with their parameters, in the order of `Problem`."""
         return [
             choose(problem, table, "exchange")
             for problem in Problem

@@ -39,7 +39,7 @@ class PlannedExchange(Rules):
         return self
 
     def time_s(self, end_s: float) -> float:
-        """Return the time of the exchange in a run that ends at `end_s`."""
+        """Return the simulated time in s of the exchange in a run that ends at `end_s`."""
         if self.at_share is not None:
             return self.at_share * end_s
         assert self.at_s is not None
@@ -77,12 +77,18 @@ class Scheduled(MethodManagement[ScheduledParameters]):
                 yield Exchange(choice)
 
     def next_event_s(self) -> float:
-        """Time of the next exchange."""
+        """Simulated time in s of the next exchange; inf if none is left."""
         return self._left[0][0] if self._left else inf
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check that entries are in order, and that rules can be combined after every exchange."""
+        """Check that entries are in order, and that rules can be combined after every exchange.
+
+        Raises
+        ------
+        InputError
+            If not, or if some entries have `at_s` and others `at_share`.
+        """
         given = choices[Problem.MM].parameters
         assert isinstance(given, ScheduledParameters)
         shares = [entry.at_share for entry in given.exchanges]

@@ -20,9 +20,10 @@ P = TypeVar("P", bound=Parameters)
 class PickOrderAssignment(Controller[P]):
     """Assigns orders of `view.orders` to stations with free slots.
 
-    Each decision is applied at once: when the controller is resumed, the order has left the backlog
-    and occupies its slot. Orders that are not chosen wait until the next call. A controller may
-    also queue orders at a station, so that pods are fetched for them before a slot is free.
+    Each decision is applied immediately: when the controller is resumed, an assigned order has left
+    the backlog and occupies its slot. Orders that are not chosen wait until the next call. A
+    controller may also queue orders at a station, so that pods are fetched for them before a slot
+    is free.
     """
 
     problem = Problem.POA
@@ -38,4 +39,4 @@ class PickOrderAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[AssignOrder | AssignLines | QueueOrder | Ask[Any] | By[Any]]:
-        """Yield pairs of order and station until nothing should be assigned now."""
+        """Yield decisions until no further order should be assigned or queued now."""

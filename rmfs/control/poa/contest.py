@@ -23,9 +23,9 @@ class Contest:
     rows
         Rows of the orders in the backlog, shape (N,).
     for_pool
-        Whether they compete for the pool; otherwise for a slot.
+        Whether they compete for a place in the pool; otherwise they compete for a slot.
     sku, units
-        SKU and units of each line that are not yet bound to a pod, shape (N, L).
+        SKU of each line, and its units not yet bound to a pod, shape (N, L).
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Contest:
     def of(
         cls, view: View, station: PickStation, rows: NDArray[np.intp], *, for_pool: bool
     ) -> Contest:
-        """Return the contest of the orders in some rows."""
+        """Return the contest of the orders in the given rows of the backlog."""
         orders = view.orders
         return cls(view, station, rows, for_pool, orders.sku[rows], orders.units[rows])
 
@@ -57,7 +57,7 @@ class Contest:
         return Contest(self.view, station, self.rows, self.for_pool, self.sku, self.units)
 
     def narrowed(self, to: NDArray[np.bool_]) -> Contest:
-        """Return a contest of some of the orders."""
+        """Return a contest of the orders for which `to`, of shape (N,), is true."""
         sku, units = self.sku[to], self.units[to]
         return Contest(self.view, self.station, self.rows[to], self.for_pool, sku, units)
 
@@ -65,14 +65,14 @@ class Contest:
         return len(self.rows)
 
     def orders(self) -> list[Order]:
-        """The orders as objects."""
+        """Return the orders as objects."""
         at_row = self.view.orders.at_row
         return [at_row[row] for row in self.rows.tolist()]
 
     def claimed(self) -> NDArray[np.int32]:
-        """Units needed here by orders that come first, shape (K,).
+        """Open units of the orders at the station that come before those of the contest, (K,).
 
-        These are orders with a slot and, if orders compete for the pool, those in the pool.
+        These are the orders with a slot and, if the contest is for the pool, those in the pool.
         """
         claimed: NDArray[np.int32] = self.view.need[self.station.index]
         if self.for_pool:
@@ -80,7 +80,10 @@ class Contest:
         return claimed
 
     def company(self) -> NDArray[np.bool_]:
-        """Whether an order already in the pool, or on a slot, needs each SKU, shape (K,)."""
+        """Whether an order with a slot has a line for each SKU, picked or not, shape (K,).
+
+        If the contest is for the pool, the orders in the pool count instead.
+        """
         wanted = np.zeros(len(self.view.skus), np.bool_)
         if self.for_pool:
             wanted[[line.sku for o in self.station.queued.values() for line in o.lines]] = True
@@ -89,10 +92,10 @@ class Contest:
         return wanted
 
     def inbound(self) -> tuple[list[int], NDArray[np.float64]]:
-        """Pods on their way to the station, the nearest first, and their distances in m.
+        """Return the pods at the station or on their way there, nearest first, and their distances.
 
-        The distance is that of the shortest path for a loaded robot from the pod's current
-        position.
+        The distance in m is the length of the shortest path of a loaded robot from the pod's
+        current position to the station.
         """
         pods = list(self.station.tasks)
         far = self.view.travel.distances_to(self.station.waypoint, "path")
@@ -101,10 +104,10 @@ class Contest:
         return [pods[place] for place in nearest_first.tolist()], metres[nearest_first]
 
     def completed_by(self, pod: int) -> NDArray[np.bool_]:
-        """Whether each order is completed by a pod on its way to the station, shape (N,).
+        """Whether a pod at the station or on its way there completes each order, shape (N,).
 
-        The pod must have all open units of the order to spare, and no other pod may be bound to the
-        order.
+        The pod must have all open units of the order beyond those that orders with a slot need, and
+        no other pod may be bound to the order.
         """
         spare = self.view.inventory.available[:, pod][self.sku]
         spare = spare - self.view.need[self.station.index][self.sku]
@@ -117,7 +120,10 @@ class Contest:
         return completes
 
     def completed_by_all(self) -> NDArray[np.bool_]:
-        """Whether each order is completed by all pods on their way together, shape (N,)."""
+        """Whether all pods at the station or on their way together complete each order, (N,).
+
+        They must have all open units of the order beyond those that `claimed` counts.
+        """
         spare = self.view.inventory.inbound[self.station.index][self.sku]
         spare = spare - self.claimed()[self.sku]
         return np.asarray(((spare >= self.units) | (self.units == 0)).all(axis=1))

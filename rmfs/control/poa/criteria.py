@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Criterion(Protocol):
-    """Rates the orders of a contest."""
+    """Rates the orders of a contest; the highest score wins."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
         """Scores of all orders, shape (N,)."""
@@ -26,7 +26,7 @@ class Criterion(Protocol):
 
 
 class Random(Parameters):
-    """A random order."""
+    """Prefers an order drawn at random."""
 
     criterion: Literal["random"] = "random"
 
@@ -36,7 +36,7 @@ class Random(Parameters):
 
 
 class FirstCome(Parameters):
-    """The order that arrived first."""
+    """Prefers the order that arrived first."""
 
     criterion: Literal["first-come"] = "first-come"
 
@@ -46,12 +46,12 @@ class FirstCome(Parameters):
 
 
 class DueTime(Parameters):
-    """The order that is due first."""
+    """Prefers the order that is due first."""
 
     criterion: Literal["due-time"] = "due-time"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Minus the due time."""
+        """Minus the due time in s."""
         return -contest.view.orders.due_s[contest.rows]
 
 
@@ -79,14 +79,14 @@ class Weight(Parameters):
 
 
 class FirstWave(Parameters):
-    """Prefers orders of the first wave: those due together with the earliest one."""
+    """Prefers orders of the first wave: late ones, and those due together with the next one due."""
 
     criterion: Literal["wave"] = "wave"
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
     """Orders due within this many seconds of the earliest one belong to its wave."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """1 for orders of the first wave and for those that are late, else 0."""
+        """1 for orders of the first wave, else 0."""
         view = contest.view
         due_s = view.orders.due_s
         coming = due_s[due_s >= view.now_s]
@@ -130,8 +130,9 @@ class InboundMatches(Parameters):
     """Prefers orders with the most units on pods on their way to the station; near pods count more.
 
     An order takes its units from the nearest pods that can spare them. Each pair of a pod and a SKU
-    taken from it scores one point. If units times metres are at most `near_unit_metres`, it scores
-    as many points as there are pods, minus one for each pod that is nearer.
+    taken from it scores one point. If the units taken times the pod's distance in m are at most
+    `near_unit_metres`, the pair instead scores as many points as there are pods, minus one for each
+    pod that is nearer.
     """
 
     criterion: Literal["inbound-matches"] = "inbound-matches"
@@ -139,7 +140,7 @@ class InboundMatches(Parameters):
     """Product of units and metres up to which a pod counts as near."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Sum of points."""
+        """Sum of the points of each order."""
         pods, metres = contest.inbound()
         if not pods:
             return np.zeros(len(contest), np.int64)
@@ -164,14 +165,15 @@ class InboundMatches(Parameters):
 
 
 class Related(Parameters):
-    """Prefers orders with the most SKUs in common with the orders they would join."""
+    """Prefers orders with the largest share of lines in common with the orders they would join."""
 
     criterion: Literal["related"] = "related"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Share of the lines without a pod whose SKU another order also needs.
+        """Share of the lines with open units whose SKU is also in a line of another order.
 
-        The other orders are those in the pool, or on slots, whichever the order is chosen for.
+        The other orders are those in the pool or those with a slot, whichever the order competes
+        for.
         """
         is_line = contest.units > 0
         shared = contest.company()[contest.sku] & is_line
@@ -213,7 +215,7 @@ def best(
     Parameters
     ----------
     first
-        Scores of all orders by the first criterion, if already known.
+        By contest, the scores of all its orders by the first criterion, if already known.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Fast lane: orders that the pod being served at a station can complete alone."""
+"""Fast lane: assigns orders that the pod being served at a station can complete alone."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ class _Visit:
 class FastLane:
     """Assigns orders of the backlog to stations whose current pod can complete them.
 
-    Orders come in order of rank, stations in order of number. Units of the pod that are needed by
-    previously assigned orders are not counted again.
+    Stations are considered by number, the orders that fit by rank. Units of the pod that orders at
+    its station already need are not counted.
 
     Parameters
     ----------

@@ -39,9 +39,9 @@ P = TypeVar("P", bound=Parameters)
 class Filling(PickOrderAssignment[P]):
     """Assigns orders to free slots, one after another.
 
-    The fast lane, for rules that have one, comes first; its reserved slot, at stations with more
-    than one, is used for nothing else. Stock can serve an order if all its units are in stock and
-    not needed by an order at a station.
+    The fast lane, for rules that have one, comes first. At stations with more than one slot, one is
+    reserved for it. Stock can serve an order if all its units are available on pods and not needed
+    by an order at a station.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -58,6 +58,8 @@ class Filling(PickOrderAssignment[P]):
     @abstractmethod
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
         """Choose an order of the backlog that stock can serve, and one of the given stations.
+
+        None if no order should be assigned now.
 
         Parameters
         ----------
@@ -91,10 +93,10 @@ class Filling(PickOrderAssignment[P]):
         return [stations[index] for index in sorted(to_fill)]
 
     def servable_rows(self) -> NDArray[np.intp]:
-        """Rows of the backlog whose orders stock can serve."""
+        """Return the rows of the backlog whose orders stock can serve, each considered alone."""
         return self.view.orders.servable(self.view.inventory.free_stock).nonzero()[0]
 
     def oldest_order(self) -> Order | None:
-        """Find the earliest order that stock can serve."""
+        """Find the order that arrived first among those that stock can serve; None if none can."""
         orders, rows = self.view.orders, self.servable_rows()
         return orders.at_row[rows[orders.index[rows].argmin()]] if len(rows) else None

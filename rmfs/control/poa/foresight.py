@@ -35,8 +35,8 @@ class ForesightParameters(Parameters):
 class Foresight(Filling[ForesightParameters]):
     """Assigns the pair of station and order with the highest score, then the next.
 
-    Ties are broken by the second score, then by the station with most free slots, the order that
-    arrived first, and the station with the lowest number. In the scores, each available unit is
+    Ties are broken by the second score, then by the station with the most free slots, the station
+    with the lowest number, and the order that arrived first. In the scores, each available unit is
     counted for one order only; the two bonuses consider each pod separately, regardless of other
     demand for its units.
     """

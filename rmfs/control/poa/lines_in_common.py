@@ -26,7 +26,7 @@ class LinesInCommon(BestPair[PairParameters]):
     parameters_model = PairParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Lines in common."""
+        """Score of each order at each station, as described above, shape (S, B)."""
         orders = self.view.orders
         lines = self.view.lines[[station.index for station in stations]]
         common: NDArray[np.int32] = (lines[:, orders.sku] * (orders.units > 0)).sum(

@@ -14,10 +14,9 @@ if TYPE_CHECKING:
 
 
 def line_matches(view: View, station: int) -> NDArray[np.int32]:
-    """Units of each order line that spare stock on inbound pods can serve, shape (B, L).
+    """Return the units of each order line that spare stock on inbound pods can serve, (B, L).
 
-    Spare stock is what is available there beyond the open requests of the station, so that an
-    available unit counts for one order only.
+    Spare stock is what is available on these pods beyond the open requests of the station.
     """
     orders = view.orders
     by_sku: NDArray[np.int32] = view.inventory.inbound[station] - view.need[station]
@@ -28,5 +27,8 @@ def line_matches(view: View, station: int) -> NDArray[np.int32]:
 
 
 def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
-    """Units of each order that spare stock on inbound pods can serve, per station, (S, B)."""
+    """Return the units of each order that spare stock can serve at each station, shape (S, B).
+
+    `line_matches` explains spare stock.
+    """
     return np.stack([np.einsum("bl->b", line_matches(view, station.index)) for station in stations])

@@ -35,7 +35,7 @@ class BestPair(Filling[Q]):
 
     @abstractmethod
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Return nonnegative scores of each order at each station, shape (S, B)."""
+        """Return the nonnegative score of each order of the backlog at each station, (S, B)."""
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
         """Choose the best pair of a servable order and a station."""

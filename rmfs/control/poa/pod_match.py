@@ -36,7 +36,7 @@ class PodMatch(BestPair[PodMatchParameters]):
     parameters_model = PodMatchParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Units matched; with `late_first`, late orders score higher than all others."""
+        """Units matched, (S, B); with `late_first`, late orders score higher than all others."""
         scores = matches(self.view, stations)
         if self.parameters.late_first:
             late = self.view.orders.due_s < self.view.now_s

@@ -78,7 +78,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
         ]
 
     def decide(self) -> Iterator[AssignOrder | QueueOrder]:
-        """Yield decisions as described above."""
+        """Empty the pools of inactive stations, then fill pools and slots as described above."""
         for station in self.view.pick_stations:
             if not station.active:
                 for order in list(station.queued.values()):

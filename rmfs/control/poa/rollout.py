@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
     """Tries out orders and stations by simulation before it assigns an order.
 
-    The base rule makes a default decision. This and the best other pairs of order and station (by
-    `rmfs.control.features.RANKINGS`) are tried in copies of the run, in which the base rule
-    continues; the best one is taken. The pacing determines the simulated time that trials cost;
-    meanwhile no order is assigned.
+    The base rule makes a default decision. This decision and the best other pairs of order and
+    station (by `rmfs.control.features.RANKINGS`) are tried in copies of the run, in which the base
+    rule continues. The best one is taken, or the default if the advantage is not certain enough
+    (`certainty`). The pacing determines the simulated time that trials cost; meanwhile no order is
+    assigned.
     """
 
     parameters_model = RolloutParameters
@@ -51,7 +52,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
                 yield first
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best decision, if it is still valid."""
+        """Yield the best decision if it is still valid; if time has passed, continue deciding."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide()

@@ -23,7 +23,9 @@ def first_row(
     tie_breaker: TieBreaker,
     draw: Callable[[int], int],
 ) -> int:
-    """Choose one of several rows of the backlog; remaining ties go by arrival.
+    """Choose one of several rows of the backlog by a tie-breaker.
+
+    Equal due times go to the order that arrived first.
 
     Parameters
     ----------
@@ -45,7 +47,7 @@ def first_row(
 def order_rank(
     tie_breaker: TieBreaker, rng: np.random.Generator
 ) -> Callable[[Order], tuple[float, int]]:
-    """Return the key by which orders compete one by one; the smallest wins."""
+    """Return a function of an order whose value ranks the order; the smallest value wins."""
     if tie_breaker == "random":
         return partial(_at_random, rng)
     return _by_due_time if tie_breaker == "due-time" else _by_arrival

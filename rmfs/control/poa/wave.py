@@ -42,7 +42,7 @@ class Wave(BestPair[WaveParameters]):
     parameters_model = WaveParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Units matched; orders of the first wave score higher than all others."""
+        """Units matched, shape (S, B); orders of the first wave score higher than all others."""
         scores = matches(self.view, stations)
         orders = self.view.orders
         servable = orders.servable(self.view.inventory.free_stock)

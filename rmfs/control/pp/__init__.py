@@ -47,7 +47,7 @@ class RollingParameters(Parameters):
 
 
 class PathPlanningInPython(PathPlanning[P]):
-    """Base class of planners written in Python; they see traffic, but no view of the world."""
+    """Base class of planners written in Python; they see the traffic but not the warehouse."""
 
     planner = "python"
 

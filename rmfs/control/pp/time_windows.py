@@ -23,7 +23,7 @@ class TimeWindowsParameters(Parameters):
 
 
 class TimeWindows(PathPlanning[TimeWindowsParameters]):
-    """Plans each leg once, first come first served, around the time windows reserved by others."""
+    """Plans legs first come, first served, around the time windows that other robots reserved."""
 
     parameters_model = TimeWindowsParameters
     planner = "time-windows"

@@ -24,7 +24,7 @@ class PbsParameters(TreeParameters):
 
 
 class Cbs(PathPlanning[TreeParameters]):
-    """CBS: one of two conflicting robots avoids the other; finds the best choices, no horizon."""
+    """CBS: of two conflicting robots, one avoids the other; seeks the best choices, no horizon."""
 
     parameters_model = TreeParameters
     planner = "cbs"

@@ -57,14 +57,14 @@ P = TypeVar("P", bound=LateBinding)
 class PodSelection(Controller[P]):
     """Chooses pods for robots that TA sends to work for a station.
 
-    TA asks it for an empty robot, or for a pod that has been served. The simulation then binds the
-    requests that the pod can serve at the station.
+    TA asks which pod an empty robot should bring to a station, or to which station a pod that has
+    been served should go next. The simulation then binds the requests that the pod can serve there.
     """
 
     problem = Problem.PPS
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Yield questions for an optimiser; only asked after `subscriptions`, by default never."""
+        """Yield questions for an optimiser; only called after `subscriptions`, by default never."""
         return iter(())
 
     @abstractmethod

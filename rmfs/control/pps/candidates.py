@@ -43,7 +43,7 @@ class Candidates:
         return len(self.pods)
 
     def narrowed(self, to: NDArray[np.intp]) -> Candidates:
-        """Return the candidates at some positions."""
+        """Return the candidates at the given positions."""
         return Candidates(self.view, self.robot, self.station, self.pods[to])
 
     def waypoints(self) -> NDArray[np.int32]:
@@ -51,7 +51,10 @@ class Candidates:
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """How many of robot and station are on another tier than each pod, (C,), or 0 for all."""
+        """How many of the two, robot and station, are on another tier than each pod, shape (C,).
+
+        The number 0 if the warehouse has a single tier.
+        """
         travel = self.view.travel
         if travel.tiers == 1:
             return 0
@@ -79,7 +82,15 @@ class Completed(NamedTuple):
     flags: NDArray[np.bool_]
 
     def weighed(self, weights: Sequence[float], queued: bool) -> NDArray[np.float64]:
-        """Return the total weight of assigned, or queued, orders that each pod completes, (C,)."""
+        """Return the total weight of the orders that each pod completes, shape (C,).
+
+        Parameters
+        ----------
+        weights
+            Weight of each of the O orders.
+        queued
+            Whether queued orders are counted; otherwise assigned ones.
+        """
         part = slice(self.assigned, None) if queued else slice(self.assigned)
         # a sum over rows, in their order: repeats on every machine
         total: NDArray[np.float64] = (
@@ -94,13 +105,13 @@ class PickCandidates(Candidates):
     Parameters
     ----------
     skus
-        The S SKUs with open requests at the station or, if these count, in its pool.
+        The S SKUs with open requests at the station or, if queued orders count, in its pool.
     have
         Available units of each SKU on each candidate, shape (S, C).
     queued
         The queued orders whose requests count.
     requests
-        The requests that count.
+        Which requests count.
     """
 
     def __init__(
@@ -123,7 +134,7 @@ class PickCandidates(Candidates):
         self._completed: Completed | None = None
 
     def narrowed(self, to: NDArray[np.intp]) -> PickCandidates:
-        """Return the candidates at some positions."""
+        """Return the candidates at the given positions."""
         kept = PickCandidates(
             self.view,
             self.robot,
@@ -145,7 +156,7 @@ class PickCandidates(Candidates):
         return units
 
     def queued_units(self) -> NDArray[np.int64]:
-        """Open requests of queued orders that each pod can serve in addition, shape (C,)."""
+        """Number of open requests of queued orders that each pod can serve in addition, (C,)."""
         if self.requests == "assigned-and-completable":
             done = self.completed()
             units = [float(order.open_units) for order in done.orders]
@@ -157,11 +168,11 @@ class PickCandidates(Candidates):
         return served
 
     def completed(self) -> Completed:
-        """The orders whose open requests each pod covers.
+        """Return the orders whose open requests each pod covers completely.
 
-        Orders are considered in the sequence in which they were assigned, then queued. Each takes
-        the units it needs from the pod if all of them are available. Orders without open requests
-        do not count.
+        Assigned orders are considered in the sequence of their assignment, then queued ones in the
+        sequence in which they were queued. Each takes the units it needs from the pod if all of
+        them are available. Orders without open requests do not count.
         """
         if self._completed is None:
             self._completed = self._find_completed()
@@ -192,8 +203,8 @@ def pick_candidates(
     Parameters
     ----------
     requests
-        The requests that count. Queued orders never count while the station has no free slot, as a
-        pod might be brought in vain.
+        Which requests count. Queued orders never count while the station has no free slot, as a pod
+        might be brought in vain.
     """
     skus = list(station.requests.lines)
     queued: list[Order] = []

@@ -32,11 +32,11 @@ class PodCriterion(Parameters):
     """Base class of criteria for pods."""
 
     def prepare(self, view: View) -> None:
-        """Request the trackers it needs; called when the controller is created."""
+        """Request the trackers that the criterion needs; called when the controller is created."""
 
 
 class RandomCriterion(PodCriterion):
-    """A random pod; optionally, those on the tiers of robot and station first."""
+    """Prefers a random pod; optionally, pods on the tiers of robot and station come first."""
 
     criterion: Literal["random"] = "random"
     prefer_same_tier: bool = True
@@ -49,7 +49,7 @@ class RandomCriterion(PodCriterion):
 
 
 class Nearest(PodCriterion):
-    """Prefers the shortest path from the robot to the pod and on to the station."""
+    """Prefers the pod with the shortest way from the robot to the pod and on to the station."""
 
     criterion: Literal["nearest"] = "nearest"
     metric: Metric = "time"
@@ -59,7 +59,7 @@ class Nearest(PodCriterion):
     """For `time`: whether the time from robot to pod is estimated by the Manhattan distance."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Minus seconds, or minus metres."""
+        """Minus the travel time in s, or minus the distance in m."""
         if self.metric == "time":
             return -_seconds(candidates, self.estimate, estimate_station=False)
         travel, pods = candidates.view.travel, candidates.waypoints()
@@ -81,7 +81,10 @@ class Fill(PodCriterion):
     """Share of used capacity that separates full pods from empty ones."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """1 above (or below) the threshold and 0 otherwise; or the share, signed."""
+        """With `binary`, 1 on the preferred side of the threshold and 0 otherwise.
+
+        Otherwise the share of used capacity, negative if empty pods are preferred.
+        """
         inventory = candidates.view.inventory
         share = inventory.used[candidates.pods] / inventory.capacity[candidates.pods]
         if self.binary:
@@ -91,7 +94,7 @@ class Fill(PodCriterion):
 
 
 class PickDemand(PodCriterion):
-    """Prefers the pod with the most units needed by any order, waiting or at a station."""
+    """Prefers the pod with the most units that orders need, in the backlog or at any station."""
 
     criterion: Literal["demand"] = "demand"
 
@@ -150,7 +153,10 @@ class PickWorkAmount(PodCriterion):
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Value of the servable requests, with boost, minus the cost of travel time."""
+        """Value of the servable requests, with boost, minus the cost of travel time.
+
+        Pods on other tiers than robot or station get a penalty if `prefer_same_tier` is set.
+        """
         scores = self._work(candidates)
         if self.time_cost:
             scores = scores - self.time_cost * _seconds(
@@ -211,7 +217,7 @@ class WaveWork(PodCriterion):
 
 
 class BundleWorkAmount(PodCriterion):
-    """Prefers the pod with the most bundles at the station."""
+    """Prefers the pod with the most, or the longest waiting, bundles at the station."""
 
     criterion: Literal["work-amount"] = "work-amount"
     age: bool = False
@@ -220,7 +226,7 @@ class BundleWorkAmount(PodCriterion):
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Number of bundles waiting at the station for the pod, or their waiting time in s."""
+        """Number of bundles waiting at the station for the pod, or total waiting time in s."""
         view = candidates.view
         station = candidates.station.number
         if self.age:
@@ -305,7 +311,11 @@ _SHORT: dict[str, dict[str, Any]] = {
 
 
 def by_name(value: Any) -> Any:
-    """Return the criterion for a name, with defaults; three names select metrics of work amount."""
+    """Return a table for a plain name, which stands for a criterion with its defaults.
+
+    `pile-on`, `age` and `lateness` become `work-amount` with that metric. Other values are returned
+    unchanged.
+    """
     given = {"criterion": value} if isinstance(value, str) else value
     if isinstance(given, dict) and given.get("criterion") in _SHORT:
         return {**given, **_SHORT[given["criterion"]]}

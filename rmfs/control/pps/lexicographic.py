@@ -36,7 +36,7 @@ AtLeastOne = pydantic.Field(min_length=1)
 
 
 class Criterion(Protocol):
-    """Rates candidates; the highest score wins."""
+    """Rates the pods of `rmfs.control.pps.candidates`; the highest score wins."""
 
     def score(self, candidates: Any, rng: np.random.Generator) -> np.ndarray[Any, Any]:
         """Scores of all candidates, shape (C,)."""
@@ -70,9 +70,9 @@ class LexicographicParameters(LateBinding):
 
 
 class Lexicographic(PodSelection[LexicographicParameters]):
-    """Chooses the pod that is best by the first criterion; ties go to the second, and so on.
+    """Chooses the pod that is best by the first criterion, ties by the second, and so on.
 
-    Full ties: the pod, or the station, with the lowest number.
+    The next station of a pod is chosen likewise. Full ties go to the lowest number.
     """
 
     parameters_model = LexicographicParameters

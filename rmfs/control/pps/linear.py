@@ -44,7 +44,7 @@ class LinearParameters(LateBinding):
 
 
 class Linear(PodSelection[LinearParameters]):
-    """Chooses the pod, or the station, with the greatest weighted sum; ties: the lowest number."""
+    """Chooses the pod, or next station, with the greatest weighted sum; ties: the lowest number."""
 
     parameters_model = LinearParameters
 
@@ -59,7 +59,7 @@ class Linear(PodSelection[LinearParameters]):
         return self._best(question, self.parameters.replenishment_pod)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose a station."""
+        """Choose the next station of a carried pod."""
         question = Question(Problem.PPS, "next station", robot.index, tuple(stations))
         return self._best(question, self.parameters.next_station)
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class RandomNextStation(Parameters):
-    """A random station."""
+    """Prefers a random station."""
 
     criterion: Literal["random"] = "random"
 
@@ -45,7 +45,7 @@ class NearestNextStation(Parameters):
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Minus metres, or minus seconds."""
+        """Minus the distance in m, or minus the travel time in s."""
         waypoints = np.array([view.stations[station].waypoint for station in stations])
         scores: NDArray[np.float64] = -view.travel.between(robot.waypoint, waypoints, self.metric)
         return scores

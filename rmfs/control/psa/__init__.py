@@ -24,13 +24,13 @@ P = TypeVar("P", bound=Parameters)
 class PodStorageAssignment(Controller[P]):
     """Chooses among the places of `view.storage.places` that are `view.storage.is_empty`.
 
-    It is asked when a robot has to store its pod; the place is reserved for it at once.
+    It is asked when a robot has to store its pod; the place is reserved immediately.
     """
 
     problem = Problem.PSA
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Yield questions for an optimiser; only asked after `subscriptions`, by default never."""
+        """Yield questions for an optimiser; only called after `subscriptions`, by default never."""
         return iter(())
 
     @abstractmethod

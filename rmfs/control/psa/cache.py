@@ -28,8 +28,9 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
     """Stores useful pods in the cache of the nearest pick station, and others outside.
 
     The station is the one nearest to the pod by Euclidean distance, even if the pod comes from a
-    replenishment station. A pod deserves a place in its cache if the weighted mean of two shares,
-    the free share of the cache and the share of its pods with a lower score, is above a threshold.
+    replenishment station. A pod deserves a place in this station's cache if the weighted mean of
+    two shares, the free share of the cache and the share of its pods with a lower score, is above a
+    threshold.
     Such a pod is stored in this cache or, if it has no empty place, outside all caches or else in
     another cache. Other pods are stored outside all caches or, if there is no empty place, in any
     cache. The place nearest to the station is chosen; ties: the lowest waypoint.
@@ -46,7 +47,7 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
         self._stations = np.array([station.waypoint for station in view.pick_stations])
 
     def place(self, robot: Robot) -> int:
-        """Choose a place in the zone of the pod, or else in other zones."""
+        """Choose a place in the zone that suits the pod, or else in other zones."""
         empty, cache_of = self.view.storage.is_empty, self._caching.zones.cache_of
         station = int(self.view.travel.metres(robot.waypoint, self._stations).argmin())
         outside = cache_of < 0

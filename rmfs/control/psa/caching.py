@@ -56,12 +56,12 @@ class Caching:
         self.cache_at[view.storage.places] = self.zones.cache_of
 
     def scores(self) -> NDArray[np.float64]:
-        """Scores of all pods, shape (P,)."""
+        """Return the weighted scores of all pods, 0 to 1, shape (P,)."""
         given = self._parameters
         return self._scores.scores(given.utility_weight, given.speed_weight)
 
     def is_worth(self, pod: int, station: int, scores: NDArray[np.float64]) -> bool:
-        """Return whether a pod deserves a place in a station's cache.
+        """Return whether a pod deserves a place in a station's cache; never if it has no places.
 
         Parameters
         ----------

@@ -29,7 +29,7 @@ class PlaceDistances:
         self._kept: dict[int, NDArray[np.float64]] = {}
 
     def away(self, waypoint: int) -> NDArray[np.float64]:
-        """Distances from a waypoint to all places, shape (L,)."""
+        """Return distances from a waypoint to all places, shape (L,), in m, or s for `time`."""
         distances = self._kept.get(waypoint)
         if distances is None:
             everywhere = self._travel.distances_from(waypoint, self._metric, keep=False)
@@ -37,7 +37,7 @@ class PlaceDistances:
         return distances
 
     def to_nearest(self, waypoints: list[int]) -> NDArray[np.float64]:
-        """Distances from all places to the nearest of some waypoints, shape (L,)."""
+        """Return distances from all places to the nearest of some waypoints, in m or s, (L,)."""
         least = np.full(len(self._places), np.inf)
         for waypoint in waypoints:
             to = self._travel.distances_to(waypoint, self._metric)[self._places]

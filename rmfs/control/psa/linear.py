@@ -35,7 +35,7 @@ class Linear(PodStorageAssignment[LinearParameters]):
     parameters_model = LinearParameters
 
     def place(self, robot: Robot) -> int:
-        """Choose a place."""
+        """Choose the place with the greatest weighted sum."""
         found = candidates_for(self.view, Question(Problem.PSA, "place", robot.index))
         row = best_of(found, "place", self.view, self.parameters.weights)
         return int(found[row]) if row >= 0 else -1

@@ -63,7 +63,7 @@ class Ranking:
         self._target_of_rank = self.prominence.rank[in_order[number]]
 
     def scores(self) -> NDArray[np.float64]:
-        """Scores of all pods, shape (P,)."""
+        """Return the weighted scores of all pods, 0 to 1, shape (P,)."""
         given = self._parameters
         return self._scores.scores(given.utility_weight, given.speed_weight)
 
@@ -75,7 +75,7 @@ class Ranking:
         return int(self._target_of_rank[better])
 
     def targets(self) -> NDArray[np.intp]:
-        """Return the target ranks of pods, shape (P,)."""
+        """Return the target ranks of all pods, shape (P,)."""
         targets = np.empty_like(self._target_of_rank)
         targets[np.argsort(-self.scores(), kind="stable")] = self._target_of_rank
         return targets

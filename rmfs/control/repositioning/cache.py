@@ -54,11 +54,12 @@ class Cache(Pausing[CacheMoveParameters]):
 
     If more are free, a pod from outside all caches is moved in. It is chosen in this order: on the
     robot's tier if possible; most picks for the station's open requests; most units ordered
-    anywhere; the fullest; the shortest move. If fewer are free, a pod of the cache is moved out: on
-    the robot's tier if possible; fewest picks; fewest ordered units; the emptiest; the nearest to a
-    pick station. It goes to the nearest place outside all zones or, if it is almost empty, to the
-    place nearest to a replenishment station. Moves into a cache come before moves out of one. Moves
-    are measured by Manhattan distance; ties: the lowest pod, then station, then waypoint.
+    anywhere; the fullest; the shortest move, of at most 32 pairs of station and pod. If fewer are
+    free, a pod of the cache is moved out: on the robot's tier if possible; fewest picks; fewest
+    ordered units; the emptiest; the nearest to a pick station. It goes to a place outside all
+    zones: the nearest or, if the pod is almost empty, the one nearest to a replenishment station.
+    Moves into a cache come before moves out of one. Moves are measured by Manhattan distance, and
+    nearness to a station by travel time; ties: the lowest pod, then the lowest waypoint.
     """
 
     parameters_model = CacheMoveParameters

@@ -20,9 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentOrderAssignment(Controller[P]):
     """Chooses stations for the bundles of `view.bundles.without_station`.
 
-    The station reserves the bundle's space at once. `view.bundles.released` contains the bundles
-    whose pod has been decided. A bundle can be handled when both its pod and its station have been
-    decided.
+    The station reserves the bundle's space immediately. `view.bundles.released` contains those
+    bundles whose pod has been chosen and released. Robots can be sent for a bundle when its station
+    has been chosen, too.
     """
 
     problem = Problem.ROA
@@ -32,4 +32,4 @@ class ReplenishmentOrderAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[SendBundle | Ask[Any] | By[Any]]:
-        """Yield pairs of bundle and station until no more bundles should be sent now."""
+        """Yield decisions until no further bundle should be sent now."""

@@ -29,7 +29,8 @@ class RandomStationParameters(Parameters):
 class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
     """Sends bundles in order of arrival to random active stations with room.
 
-    It does not wait for the choice of the pod. A bundle waits if no station has room.
+    By default the last station is chosen again while it has room. The rule does not wait for the
+    choice of the pod. A bundle waits if no station has room.
     """
 
     parameters_model = RandomStationParameters

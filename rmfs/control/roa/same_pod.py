@@ -51,7 +51,8 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
     line from the current position of the pod, even if it is being carried; ties: the station with
     the lowest number.
 
-    A batch larger than every station is split: as much of it as fits goes to an empty station.
+    An empty station that is smaller than the batch may be chosen, too. The batch is then split: the
+    station gets as much of it as fits.
 
     If batches are broken, a bundle goes to the station of the last bundle of its pod. If that
     station has no room or is switched off, it goes to the nearest other station; if there was no
@@ -68,7 +69,7 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
         self._last: dict[int, ReplenishmentStation] = {}
 
     def decide(self) -> Iterator[SendBundle]:
-        """Yield assignments batch by batch until one fits nowhere, or bundle by bundle."""
+        """Yield assignments batch by batch or, if batches are broken, bundle by bundle."""
         return self._bundles() if self.parameters.break_batches else self._batches()
 
     def _batches(self) -> Iterator[SendBundle]:

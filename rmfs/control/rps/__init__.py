@@ -20,9 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentPodSelection(Controller[P]):
     """Chooses pods for the bundles of `view.bundles.without_pod`.
 
-    Space for the bundle is reserved on the pod at once. ROA and TA may act on the choice only after
-    it is released; until then further bundles can be promised to the same pod, so that one trip
-    serves all of them (`view.bundles.unreleased`).
+    Space for the bundle is reserved on the pod immediately. ROA and TA may act on the choice
+    only after it is released; until then further bundles can be promised to the same pod, so that
+    one trip serves all of them (`view.bundles.unreleased`).
     """
 
     problem = Problem.RPS

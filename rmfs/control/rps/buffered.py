@@ -29,8 +29,8 @@ P = TypeVar("P", bound=Parameters)
 class Buffered(ReplenishmentPodSelection[P]):
     """Promises bundles one by one and releases a pod's bundles together.
 
-    Bundles held back by an exchanged rule are released in the same way. The rule is also asked when
-    a time-out expires.
+    Bundles that a former rule promised but did not release are released in the same way. The rule
+    is also asked when a time-out expires.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -43,23 +43,23 @@ class Buffered(ReplenishmentPodSelection[P]):
 
     @abstractmethod
     def threshold(self, pod: int) -> float:
-        """Share of a pod's capacity, stored and promised, at which its bundles are released."""
+        """Return the share of capacity in use or promised at which a pod's bundles are released."""
 
     @abstractmethod
     def timeout_s(self, pod: int) -> float:
-        """Return the maximum time from the last promise to a pod to the release of its bundles."""
+        """Return the maximum time in s between the last promise to a pod and its release."""
 
     @property
     @abstractmethod
     def shortest_timeout_s(self) -> float:
-        """The shortest of these times."""
+        """Lower bound of `timeout_s` over all pods, in s."""
 
     def candidates(self) -> list[Bundle]:
         """List the bundles for which a pod can be chosen now, in order of arrival."""
         return list(self.view.bundles.without_pod.values())
 
     def fits(self, bundle: Bundle) -> NDArray[np.bool_]:
-        """Pods with room for a bundle, shape (P,)."""
+        """Whether each pod has room for a bundle, shape (P,)."""
         inventory = self.view.inventory
         return inventory.load + bundle.space <= inventory.capacity
 
@@ -94,7 +94,7 @@ class Buffered(ReplenishmentPodSelection[P]):
         yield from self._due()
 
     def next_event_s(self) -> float:
-        """Time at which the next buffer times out."""
+        """Simulated time in s at which the next time-out expires; inf if no bundle is held back."""
         since = self.view.bundles.unreleased_since_s
         earliest_s = inf
         for pod, time_s in since.items():
@@ -149,17 +149,17 @@ class EvenlyBuffered(Buffered[B]):
         return self.parameters.buffer_threshold
 
     def timeout_s(self, pod: int) -> float:
-        """Return the common time-out."""
+        """Return the common time-out in s."""
         return self.parameters.buffer_timeout_s
 
     @property
     def shortest_timeout_s(self) -> float:
-        """The common time-out."""
+        """The common time-out in s."""
         return self.parameters.buffer_timeout_s
 
 
 class Sticky(EvenlyBuffered[S]):
-    """Chooses the last pod again while it has room and until a station serves it."""
+    """By default, chooses the last pod again while it has room and until a station serves it."""
 
     hears = frozenset({Trigger.BUNDLE_STORED})
 

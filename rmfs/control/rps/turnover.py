@@ -82,12 +82,12 @@ class Turnover(Buffered[TurnoverPodParameters]):
         return self.parameters.buffer_thresholds[self._classes.pod_class.item(pod)]
 
     def timeout_s(self, pod: int) -> float:
-        """Return the time-out of the pod's class."""
+        """Return the time-out of the pod's class in s."""
         return self.parameters.buffer_timeouts_s[self._classes.pod_class.item(pod)]
 
     @property
     def shortest_timeout_s(self) -> float:
-        """The shortest time-out of a class."""
+        """The shortest time-out of a class in s."""
         return min(self.parameters.buffer_timeouts_s)
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
@@ -102,7 +102,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
 
 
 def outward(middle: int, count: int) -> list[int]:
-    """List the numbers below `count` outward: a middle one, the next higher, the next lower, ..."""
+    """List the numbers from 0 to `count` - 1: `middle`, the next higher, the next lower, ..."""
     steps = [middle]
     for away in range(1, count):
         steps += [number for number in (middle + away, middle - away) if 0 <= number < count]

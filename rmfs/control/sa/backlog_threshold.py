@@ -45,10 +45,9 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
     All stations are on at the start. After each pause, each kind is considered separately. If more
     work waits than the threshold, and the used share of the active stations is not below the limit,
     the first station that is off is switched on. If no more work waits than the threshold, and the
-    used share is below the limit, the last one that is on is switched off. Otherwise nothing
-    changes. The last active station of a kind stays on.
-    First and last refer to the activation number, ties by number. Bundles held back by RPS count as
-    waiting.
+    used share is below the limit, the last station that is on is switched off. Otherwise nothing
+    changes. The only active station of a kind stays on. `First` and `last` refer to the activation
+    number, ties by number. Bundles held back by RPS count as waiting.
     """
 
     parameters_model = BacklogThresholdParameters
@@ -73,7 +72,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
         self._order = {pick: activation_order(view, pick) for pick in (True, False)}
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield all stations at the start, and later at most one of each kind."""
+        """Yield all stations that are off at the start, and later at most one of each kind."""
         if not self._started:
             self._started = True
             self._from_s = dict.fromkeys(self._from_s, self.view.now_s + self.parameters.pause_s)
@@ -89,7 +88,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
                 yield switch
 
     def next_event_s(self) -> float:
-        """Time at which the next pause ends."""
+        """Simulated time in s at which the next pause ends; inf if there is none."""
         return min((at_s for at_s in self._from_s.values() if at_s > self.view.now_s), default=inf)
 
     def _switch(self, pick: bool) -> SwitchStation | None:

@@ -40,7 +40,7 @@ class Staffed(StationActivation[StaffedParameters]):
     """Follows the roster of the scenario, and gives pickers who are too tired a rest.
 
     A pick station is on while a picker is there. When the picker's fatigue reaches `tired`, the
-    station takes no new orders until the picker has rested; open orders are finished first.
+    station takes no new orders until fatigue falls to `rested`; open orders are still finished.
     Replenishment stations are always on, as are all stations if the scenario has no pickers.
     """
 
@@ -57,7 +57,7 @@ class Staffed(StationActivation[StaffedParameters]):
                 yield SwitchStation(station.index, active=on)
 
     def next_event_s(self) -> float:
-        """Time at which pickers come or leave, or fatigue is checked next."""
+        """Simulated time in s at which pickers come or leave or fatigue is checked next, or inf."""
         staff = self.view.staff
         if staff is None:
             return inf

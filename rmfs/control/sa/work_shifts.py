@@ -64,7 +64,7 @@ class WorkShifts(StationActivation[WorkShiftsParameters]):
                 yield SwitchStation(station.index, active=on)
 
     def next_event_s(self) -> float:
-        """Time of the next change between on and off."""
+        """Simulated time in s of the next change between on and off; inf if there is none."""
         return self._present()[1]
 
     def _present(self) -> tuple[bool, float]:

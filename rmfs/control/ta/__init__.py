@@ -39,7 +39,7 @@ class Consult(Protocol):
         ...
 
     def may_move(self) -> bool:
-        """Return whether there is a repositioning rule that moves pods."""
+        """Return whether the repositioning rule may move pods."""
         ...
 
     def move_for(self, robot: Robot) -> Move | None:
@@ -56,9 +56,9 @@ WORK = frozenset(
 class TaskAllocation(Controller[P]):
     """Gives tasks to the robots of `view.asking` and, optionally, to those of `view.resting`.
 
-    Each decision is applied before the next one. For a robot left without a task, the rule is asked
-    again at the next trigger. Robots at rest should get work as soon as there is any: rules
-    subscribe to the events of `WORK`.
+    Each decision is applied before the rule is resumed. For a robot left without a task, the rule
+    is asked again at the next trigger. Robots at rest should get work as soon as there is any: by
+    default, rules subscribe to the events of `WORK`.
     """
 
     problem = Problem.TA
@@ -77,7 +77,8 @@ class TaskAllocation(Controller[P]):
 
     @abstractmethod
     def rest_place(self, robot: Robot) -> int:
-        """Choose a place where an empty robot may rest; -1: where it is.
+        """Choose a place (waypoint) where an empty robot may rest; -1 if it should stay.
 
-        It is also called when a robot at rest must make room for one that fetches the pod above it.
+        The simulation calls this when a robot at rest must make room for another one that fetches
+        the pod above it.
         """

@@ -13,9 +13,10 @@ if TYPE_CHECKING:
 
 
 def split(robots: int, first: float, second: float) -> tuple[int, int]:
-    """Divide robots among two groups by weight, rounded down; the rest goes to the smaller group.
+    """Return how many robots two groups get by weight, rounded down.
 
-    Ties go to the first group. If both weights are 0, no robot is assigned.
+    The robot left over, if any, goes to the group with fewer robots, in a tie to the first one; a
+    group of weight 0 gets none. If both weights are 0, no robot is assigned.
     """
     total = first + second
     if total <= 0:
@@ -28,7 +29,7 @@ def split(robots: int, first: float, second: float) -> tuple[int, int]:
 
 
 def deal(robots: int, stations: Sequence[int], limit: int, goals: dict[int, int]) -> int:
-    """Assign robots to stations in turn, at most `limit` each; return the number left.
+    """Assign robots to stations in turn, up to `limit` per station; return the number left over.
 
     Parameters
     ----------
@@ -63,12 +64,13 @@ def reassign(
     goals
         Number of robots per station; 0 for stations not listed.
     distance
-        Distance between robots and all stations, shape (R, S).
+        Distance between robots and all stations in any unit, shape (R, S).
 
     Returns
     -------
     list of int
-        The new station of each robot. Robots beyond the goals of all stations have none.
+        The new station of each robot, or -1. Stations with more robots than their goal lose the
+        robots with the highest numbers.
     """
     result = list(station_of)
     surplus = {station: -goal for station, goal in goals.items()}

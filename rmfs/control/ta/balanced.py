@@ -42,7 +42,7 @@ class BalancedParameters(TeamParameters):
 
 
 class Balanced(StationTeams[BalancedParameters]):
-    """Divides robots among the stations with work; each robot works only for its station.
+    """Divides robots among the stations with work; by default, each works only for its station.
 
     A robot that carries a pod continues as long as the pod can serve an open request of the robot's
     station (or, optionally, of another one nearby), and then parks it. An empty robot gets the pod
@@ -54,10 +54,9 @@ class Balanced(StationTeams[BalancedParameters]):
     among the kinds of station by weight times the share of stations with work, and within a kind in
     turn, stations far from the middle of the tier first. Robots in excess of the limit go to any
     station below it. Robots change to their new stations nearest first. If no station had work,
-    robots are
-    redistributed as soon as there is new work. The share of robots given by the weight of
-    repositioning, rounded down, gets no station. The robot that is asked about does not count
-    towards its station's limit.
+    robots are redistributed as soon as there is new work. The share of robots given by the weight
+    of repositioning, rounded down, gets no station. When a robot asks for work, it does not itself
+    count towards the limit of the station.
     """
 
     parameters_model = BalancedParameters
@@ -87,7 +86,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return station >= 0 and self.workers(station, robot) < self.parameters.robots_per_station
 
     def stations_for(self, robot: Robot) -> Sequence[int]:
-        """Return its own station; or all stations, nearest first, ties by number."""
+        """Return the robot's station or, with `search_all`, all stations, the nearest first."""
         own = super().stations_for(robot)
         if not own or not self.parameters.search_all:
             return own
@@ -96,7 +95,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return nearest_first
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Send the robot on to another station nearby, if allowed; PPS chooses which."""
+        """Return a task at another station nearby, if allowed; PPS chooses the station."""
         if not self.parameters.other_stations:
             return None
         among = [s.index for s in self.view.stations if self.may_work(robot, s.index)]
@@ -106,17 +105,17 @@ class Balanced(StationTeams[BalancedParameters]):
         return self.bring(robot, robot.pod, consult.next_station(robot, stations))
 
     def looks_elsewhere(self) -> bool:
-        """Whether the robot searches for work at all stations."""
+        """Whether robots search for work at all stations."""
         return self.parameters.search_all
 
     def may_be_moved(self, consult: Consult) -> bool:
-        """Whether idle pods are moved before resting, and a repositioning rule exists."""
+        """Whether robots without work may move idle pods."""
         given = self.parameters
         moves = given.reposition_before_rest or given.reposition_weight > 0
         return moves and consult.may_move()
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Move an idle pod."""
+        """Return the task of moving an idle pod, if allowed and repositioning finds a move."""
         given = self.parameters
         only_moves = given.reposition_weight > 0 and self._station_of[robot.index] < 0
         if not (given.reposition_before_rest or only_moves):

@@ -45,12 +45,10 @@ class BruteForce(Solo[BruteForceParameters]):
     The estimated time is a sum of three: the straight path from robot to pod at top speed; the time
     to lift the pod (and first to set down another one); and the longer of the unhindered time to
     the station and the expected wait there. All robots together look for picks until there are
-    none, then for
-    bundles until there are none. If the best pod is not the carried one, the carried pod is parked
-    on the way, where the drive to the place plus the straight path to the other pod takes least
-    time.
-    Without work, pods are parked at the nearest place. Ties: the carried pod, then the station,
-    then the pod with the lowest number.
+    none, then for bundles until there are none. If the best pod is not the carried one, the carried
+    pod is parked on the way, where the drive to the place plus the straight path to the other pod
+    takes least time. Without work, pods are parked at the nearest place. Ties: the carried pod,
+    then the station, then the pod with the lowest number.
 
     The rule chooses pods and places itself, so PPS and PSA must be dummies; bundles go into the
     pods chosen by RPS. Fetching the other pod is a prepared task; if another robot has taken the
@@ -67,7 +65,7 @@ class BruteForce(Solo[BruteForceParameters]):
         self._picks = True
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the best task, or the task that must precede it."""
+        """Yield the best task; if another pod is carried, yield the task of parking it first."""
         view = self.view
         job = self._best(robot, consult)
         if job is None:
@@ -86,7 +84,7 @@ class BruteForce(Solo[BruteForceParameters]):
                 yield Prepare(robot, (bring(view, robot, job.pod, job.station),))
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find the best task for an empty robot."""
+        """Find the best task for an empty robot; None if there is no work."""
         job = self._best(robot, consult)
         return None if job is None else self._bring(robot, job)
 

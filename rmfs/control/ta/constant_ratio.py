@@ -39,7 +39,7 @@ class ConstantRatio(StationTeams[ConstantRatioParameters]):
         return found or self._active
 
     def goals(self, active: frozenset[int]) -> dict[int, int]:
-        """Return the number of robots for each station, assigned in turn."""
+        """Return the number of robots of each given station, assigned in turn."""
         order = [station for station in self._far_first if station in active]
         robots = len(self.view.robots)
         picks, others = by_kind(self.view, order)

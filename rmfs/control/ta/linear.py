@@ -38,8 +38,8 @@ class Linear(Solo[LinearParameters]):
 
     The task with the greatest weighted sum is chosen. PPS, PSA and repositioning choose pod and
     place; if they find none, the next best task is chosen. If another robot without work stands
-    beneath the pod, that robot gets the task. Robots at rest get work with a greater sum than rest.
-    Ties: the station with the lowest number, then store, move, rest.
+    beneath the pod, that robot gets the task. Robots at rest get work whose sum is at least the
+    weight of `rest`. Ties: the station with the lowest number, then store, move, rest.
     """
 
     parameters_model = LinearParameters
@@ -60,7 +60,7 @@ class Linear(Solo[LinearParameters]):
                 return
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find the best work for a robot at rest, if it is better than rest."""
+        """Find the best work for a robot at rest whose sum is at least the weight of `rest`."""
         for kind, station in self._best_first(robot, self.parameters.weights["rest"]):
             task = self._work(robot, station, consult) if kind == WORK else None
             if task is not None:

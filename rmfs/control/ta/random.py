@@ -43,7 +43,7 @@ class RandomTasksParameters(SoloParameters):
 
 
 class RandomTasks(Solo[RandomTasksParameters]):
-    """Gives each robot a random pod with work, and a random station where it has some.
+    """Gives each robot a random pod with work, and a random station where the pod has work.
 
     A robot is a picker or a replenisher, initially by the share of pick stations, and changes from
     time to time. The rule chooses pods itself, so PPS must be a dummy (whose parameters control

@@ -20,8 +20,8 @@ RestRule = Literal["middle", "nearest", "random"]
 class RestPlaces:
     """Places to rest beneath stored, unclaimed pods; only if there are none, empty places.
 
-    An idle robot beneath a pod is not in the way: other empty robots pass beneath stored pods, and
-    if its pod is needed, it gets the task or is sent away.
+    An idle robot beneath a pod is not in the way: other empty robots pass beneath stored pods. If
+    the pod is needed, the robot beneath it gets the task or is sent away.
 
     Parameters
     ----------

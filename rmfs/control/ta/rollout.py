@@ -39,10 +39,11 @@ class TaskRolloutParameters(RolloutParameters):
 class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
     """Tries out tasks by simulation: other stations, other pods, other places.
 
-    The base rule, with PPS and PSA, makes a default decision. It is compared in trials with other
-    pods for the station, work for other stations, or other places for the pod; the best one is
-    chosen. Depending on `over`, PPS and PSA are thus decided by look-ahead as well. The pacing
-    determines the simulated time that trials cost; meanwhile no robot gets a task.
+    The base rule, with PPS and PSA, makes a default decision. The decision is compared in trials
+    with other pods for the pick station, work for other stations, or other places for the pod. The
+    best one is taken, or the default if the advantage is not certain enough (`certainty`).
+    Depending on `over`, PPS and PSA are thus decided by look-ahead as well. The pacing determines
+    the simulated time that trials cost; meanwhile no robot gets a task.
     """
 
     parameters_model = TaskRolloutParameters
@@ -57,7 +58,7 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
         self._consult: Consult
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose by the base rule."""
+        """Choose the place by the base rule."""
         return int(self.base.rest_place(robot))
 
     def decide(self, consult: Consult) -> Iterator[Any]:
@@ -74,7 +75,7 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
                 return
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best task, if it is still possible."""
+        """Yield the best task if it is still possible; if time has passed, continue deciding."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide(self._consult)

@@ -1,4 +1,7 @@
-"""Base of rules in which robots look for work by themselves: TA random, brute-force and swarm."""
+"""Base of rules in which robots look for work by themselves.
+
+These are TA random, brute-force, swarm and linear.
+"""
 
 from __future__ import annotations
 
@@ -43,11 +46,11 @@ class Solo(TaskAllocation[P]):
 
     @abstractmethod
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield a task for a robot that needs one, and possibly its next tasks."""
+        """Yield a task for a robot that needs one, and possibly tasks prepared to follow."""
 
     @abstractmethod
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find work for a robot at rest."""
+        """Find work for a robot at rest; None if there is none."""
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Yield a task for every robot that needs one, and work for robots at rest."""
@@ -71,22 +74,25 @@ class Solo(TaskAllocation[P]):
                     yield found
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose by the rest rule."""
+        """Choose the place by the rest rule; -1 if there is none."""
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:
-        """Send a robot to a resting place, or let it rest where it is."""
+        """Return the task of resting at the place chosen, or else where the robot is."""
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def park(self, robot: Robot, consult: Consult) -> Iterator[Park]:
-        """Store the pod of a robot at the place chosen by PSA, if there is one."""
+        """Yield the task of storing a robot's pod at the place chosen by PSA, if there is one."""
         place = consult.place_for(robot)
         if place >= 0:
             yield Park(robot, place)
 
     def pods_for(self, robot: Robot, station: int) -> NDArray[np.intp]:
-        """Return the available pods with work at a station, ascending, shape (C,)."""
+        """Return the available pods with work at a station, ascending, shape (C,).
+
+        Queued orders do not count.
+        """
         target = self.view.stations[station]
         if isinstance(target, PickStation):
             return pick_candidates(self.view, robot, target).pods

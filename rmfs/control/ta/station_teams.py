@@ -40,7 +40,7 @@ P = TypeVar("P", bound=TeamParameters)
 
 
 class StationTeams(TaskAllocation[P]):
-    """Assigns each robot work of its own station.
+    """Assigns each robot to a station and gives it work of this station.
 
     A robot that carries a pod continues as long as the pod can serve the robot's station, and then
     parks it. An empty robot gets the pod that PPS chooses; if another robot without work stands
@@ -76,7 +76,7 @@ class StationTeams(TaskAllocation[P]):
 
     @abstractmethod
     def goals(self, active: frozenset[int]) -> dict[int, int]:
-        """Return the number of robots that each of these stations should have."""
+        """Return the number of robots that each of the given stations should have."""
 
     def first_stations(self) -> frozenset[int]:
         """Return the stations that should have robots when the rule is installed."""
@@ -92,11 +92,11 @@ class StationTeams(TaskAllocation[P]):
         return (station,) if station >= 0 else ()
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Send a pod to a station to which its robot does not belong, before it is parked."""
+        """Find a task at a station of another team for a carried pod; None: the pod is parked."""
         return None
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find a task for a robot for which no station has work."""
+        """Find a task for an empty robot for which no station has work; None: the robot rests."""
         return None
 
     def may_be_moved(self, consult: Consult) -> bool:
@@ -104,13 +104,13 @@ class StationTeams(TaskAllocation[P]):
         return True
 
     def looks_elsewhere(self) -> bool:
-        """Whether `stations_for` returns other stations than a robot's own."""
+        """Whether `stations_for` may return other stations than a robot's own."""
         return True
 
     # --- tasks ----------------------------------------------------------------------------------
 
     def next_event_s(self) -> float:
-        """Time of the next redistribution of the robots."""
+        """Simulated time in s of the next redistribution of the robots; inf if there is none."""
         return self._balance_due_s
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision]:
@@ -130,7 +130,7 @@ class StationTeams(TaskAllocation[P]):
         yield from self._wake(consult)
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose by the rest rule."""
+        """Choose the place by the rest rule; -1 if there is none."""
         return self._rest.choose(robot)
 
     def _next_task(self, robot: Robot, consult: Consult) -> TaskDecision | None:
@@ -177,12 +177,12 @@ class StationTeams(TaskAllocation[P]):
         return self.bring(chosen, pod, station)
 
     def bring(self, robot: Robot, pod: int, station: int) -> TaskDecision:
-        """Let a robot bring a pod, and count it as a robot of the station."""
+        """Return the task of bringing a pod, and count its robot as one working for the station."""
         self.count(robot, station)
         return bring(self.view, robot, pod, station)
 
     def count(self, robot: Robot, station: int) -> None:
-        """Count a robot as one of a station (-1: of none) from now on."""
+        """Count a robot as one that works for a station (-1: for none) from now on."""
         former = self._works_for[robot.index]
         if former >= 0:
             self._workers[former] -= 1

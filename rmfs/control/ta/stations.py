@@ -27,7 +27,7 @@ def waypoints(view: View) -> NDArray[np.int64]:
 
 
 def by_kind(view: View, stations: Iterable[int]) -> tuple[list[int], list[int]]:
-    """Divide stations into pick stations and replenishment stations."""
+    """Return which of the stations are pick stations, and which replenishment stations."""
     picks: list[int] = []
     others: list[int] = []
     for station in stations:
@@ -36,7 +36,7 @@ def by_kind(view: View, stations: Iterable[int]) -> tuple[list[int], list[int]]:
 
 
 def bring(view: View, robot: Robot, pod: int, station: int) -> TaskDecision:
-    """Let a robot bring a pod to a station of either kind."""
+    """Return the decision to let a robot bring a pod to a pick or replenishment station."""
     if isinstance(view.stations[station], PickStation):
         return BringForPicks(robot, pod, station)
     return BringForBundles(robot, pod, station)
@@ -49,7 +49,10 @@ def station_of_task(robot: Robot) -> int:
 
 
 def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
-    """Return the idle robot that stands beneath a stored pod, or else the given robot."""
+    """Return the idle robot beneath a stored, available pod, or else the given robot.
+
+    A robot on its way to rest beneath the pod counts as well.
+    """
     storage = view.storage
     keeper = storage.kept_by[storage.place_of[pod]]
     return robot if keeper < 0 else view.robots[keeper]
@@ -58,7 +61,10 @@ def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
 def near_by(
     view: View, robot: Robot, radius_m: float, among: Iterable[int], consult: Consult
 ) -> list[int]:
-    """Return stations on the robot's tier, within a distance, that its pod can serve."""
+    """Return the stations that a robot's pod can serve, on its tier and within a radius.
+
+    Distances are Euclidean.
+    """
     stations = [view.stations[index] for index in among]
     if not stations:
         return []
@@ -74,7 +80,7 @@ def near_by(
 
 
 def far_first(view: View) -> list[int]:
-    """Return stations, those far from the middle of their tier first, ties by number."""
+    """Return the stations, the farthest from the middle of their tier first, ties by number."""
     layout, at = view.layout, waypoints(view)
     tiers = [layout.tiers[tier] for tier in layout.tier[at].tolist()]
     x = layout.x_m[at] - np.array([tier.length_m / 2 for tier in tiers])

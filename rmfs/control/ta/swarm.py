@@ -57,9 +57,10 @@ class Swarm(Solo[SwarmParameters]):
     of orders or bundles there, and m the number of robots matched with it. The station is drawn
     with a probability proportional to s^2 / (s^2 + alpha T^2 + beta d^2), where T is half the
     limit, rounded down, and d the distance. The multiplier of the drawn station becomes 1, and so
-    do those of stations without stimulus; the others grow. Of S stations, let R be the rest share.
-    If the number of stations without stimulus exceeds R by e, rest can be drawn as well, with the
-    weight e^3 / (S - R)^3. A robot stays matched with its station as long as it carries a pod.
+    do those of stations without stimulus; the others grow. Let S be the number of stations and R
+    the rest share times S, rounded. If the number of stations without stimulus exceeds R by e, rest
+    can be drawn as well, with the weight e^3 / (S - R)^3; multipliers then do not grow. A robot
+    stays matched with its station as long as it carries a pod.
     """
 
     parameters_model = SwarmParameters

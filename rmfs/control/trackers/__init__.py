@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Tracker:
-    """Counts something over a run; it reads the view and changes nothing.
+    """Base class of trackers: counts something over a run, reads the view and changes nothing.
 
     A tracker starts from the state of the world when a controller first requests it, and exists
     until the end of the run, so that it is up to date for a controller installed later.
@@ -36,7 +36,7 @@ T = TypeVar("T", bound=Tracker)
 
 
 class Trackers:
-    """The trackers of a run: one for each kind and settings, created on first request."""
+    """The trackers of a run: one for each combination of class and settings, made on request."""
 
     def __init__(self, view: View) -> None:
         self._view = view
@@ -48,11 +48,13 @@ class Trackers:
     def get(self, kind: type[T], *settings: Hashable) -> T:
         """Return a tracker, which is created if necessary.
 
-        Controllers and trackers must call this at construction; a tracker created later would not
-        be notified of events before the next exchange of a controller.
+        Controllers and trackers must first call this at construction; a tracker created later would
+        not be notified of events before the next exchange of a controller.
 
         Parameters
         ----------
+        kind
+            Class of the tracker.
         settings
             Arguments of its constructor, after the view.
         """

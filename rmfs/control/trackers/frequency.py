@@ -41,7 +41,10 @@ class Frequency(Tracker):
 
 
 class PairFrequency(Tracker):
-    """Number of orders that contain two SKUs; starts with past orders and the backlog."""
+    """For each pair of SKUs, the number of orders that contain both.
+
+    Counted are past orders, the backlog when the tracker starts, and orders that arrive afterwards.
+    """
 
     hears = frozenset({Trigger.NEW_ORDER})
 
@@ -58,9 +61,9 @@ class PairFrequency(Tracker):
         self._count(line.sku for line in subject.lines)
 
     def orders_with(self, sku: int) -> NDArray[np.int64]:
-        """Return the number of orders with each SKU and this one, and a final 0, shape (K + 1,).
+        """Return for each SKU the number of orders with it and the given one, shape (K + 1,).
 
-        The final 0 is for the padding of `Inventory.skus_on`.
+        The last entry is 0, for the padding of `Inventory.skus_on`.
         """
         counts = np.zeros(len(self.view.skus) + 1, np.int64)
         partners = self._orders.get(sku)

@@ -21,7 +21,7 @@ _STEPS = 1 << 20  # popularity is counted in integers, so that sums never drift
 
 
 def demand(view: View, kind: Demand) -> NDArray[np.int64]:
-    """Return the units of each SKU in demand, shape (K,)."""
+    """Return the number of units of each SKU in demand, shape (K,)."""
     if kind == "wanted":
         return view.inventory.wanted
     units: NDArray[np.int64] = view.need.sum(axis=0, dtype=np.int64)
@@ -61,7 +61,7 @@ class DemandOnPods(Tracker):
             self._units[pod] += min(now, wanted) - min(now - change, wanted)
 
     def units(self) -> NDArray[np.int64]:
-        """Return the units in demand on each pod, shape (P,)."""
+        """Return the number of units in demand on each pod, shape (P,)."""
         new = demand(self.view, self._kind)
         contained, old = self.view.inventory.contained, self._demand
         for sku in (new != old).nonzero()[0].tolist():

@@ -22,7 +22,7 @@ class Prominence(Tracker):
     Attributes
     ----------
     seconds
-        Time from each of the L storage places to its nearest pick station, shape (L,).
+        Time in s from each of the L storage places to its nearest pick station, shape (L,).
     rank
         Rank of each place, shape (L,).
     in_order
