@@ -113,8 +113,8 @@ def demonstrate(
 ) -> None:
     """Run a warehouse with real robots and write a run folder.
 
-    If it is killed, calling it again with the same arguments resumes the demonstration. With an
-    emulated room of its own it begins again, with the same result.
+    If the command is killed, calling it again with the same arguments resumes the demonstration.
+    With `--robots emulated`, the demonstration starts again instead, with the same result.
     """
     from rmfs.cli.simulate import conclude, default_name
     from rmfs.cli.terminal import progress, step

@@ -102,7 +102,7 @@ def tags(layout: Layout, file: Path | None) -> list[str]:
     Raises
     ------
     InputError
-        If the file does not give each waypoint a different tag.
+        If the file cannot be read, or does not give each waypoint a different tag.
     """
     if file is None:
         return [f"W{waypoint}" for waypoint in range(layout.waypoints)]

@@ -1,7 +1,7 @@
 """The layout of a warehouse: waypoints, stations, pods and robots before anything happens.
 
-`load` reads every kind of layout file, `generate` makes the default layout from parameters,
-`check` says what is wrong with one, `draw` shows it.
+`load` reads every kind of layout file, `generate` makes a default layout from parameters, `check`
+returns the violations of a layout, and `draw` draws a layout.
 """
 
 from typing import TYPE_CHECKING, Any

@@ -27,11 +27,11 @@ class SwapParameters(Model):
     power_w: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 500.0
     """Charging power in W of each battery in stock."""
     ready_share: Annotated[float, Field(gt=0, lt=1)] = 0.9
-    """Level from which a battery in stock may be used; a robot waits until there is one."""
+    """Charge level from which a battery in stock may be used; a robot waits for such a battery."""
 
 
 class RecoveryKind(StationKind):
-    """A kind of station where robots without pods get energy; CA decides when they go there."""
+    """A kind of station where robots without pods get energy; charge assignment (CA) sends them."""
 
     task = "rmfs.world.charging:ChargeTask"
     state = "rmfs.world.charging:RecoveryStation"

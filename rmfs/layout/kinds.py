@@ -61,14 +61,14 @@ class StationKind:
     parameters_model
         Model of the parameters.
     task
-        Kind of task that brings a pod there, as a subclass of `VisitTask`.
+        Kind of task that brings a robot there, as a subclass of `VisitTask`.
     state
         State of a station during a run, as a subclass of `Station`.
     service
         Handling of a pod at the head of the queue, as a subclass of `Service`.
     controller
         Controller that decides which pod goes there and when, as a subclass of `VisitController`;
-        None if the decision problems decide.
+        None if the controllers of the decision problems decide.
     measures
         Measures whose columns the footprint contains if there are such stations.
     """
@@ -88,7 +88,7 @@ class StationKind:
         self.parameters: Any = self.parameters_model() if parameters is None else parameters
 
     def digested(self) -> tuple[object, ...]:
-        """Identity of the kind for hashing: its source files and its parameters."""
+        """Return what identifies the kind: name, SHA-256 of its source files, and parameters."""
         files = sources([type(self)]).values()
         written = sorted(hashlib.sha256(path.read_bytes()).hexdigest() for path in files)
         return self.name, written, self.parameters.model_dump(mode="json")
@@ -104,12 +104,12 @@ class StationKind:
         return resolve(getattr(self, name), base, f"{name} of {self.name} stations")
 
     def busy_s(self, station: Any) -> float:
-        """Return how long one item occupies a station; 0 if that varies."""
+        """Return the time in s for which a unit or bundle occupies a station; 0 if it varies."""
         return 0.0
 
 
 class PickKind(StationKind):
-    """Units go from pods into orders."""
+    """The kind of pick stations, where units go from pods into orders."""
 
     name = "pick"
     letter = "P"
@@ -120,12 +120,12 @@ class PickKind(StationKind):
     service = "rmfs.simulation.service:PickService"
 
     def busy_s(self, station: Any) -> float:
-        """Time of a unit."""
+        """Return the time in s for which a unit occupies a station."""
         return float(station.unit_transfer_s)
 
 
 class ReplenishmentKind(StationKind):
-    """Bundles go into pods."""
+    """The kind of replenishment stations, where bundles go into pods."""
 
     name = "replenishment"
     letter = "R"
@@ -136,7 +136,7 @@ class ReplenishmentKind(StationKind):
     service = "rmfs.simulation.service:ReplenishmentService"
 
     def busy_s(self, station: Any) -> float:
-        """Time of a bundle."""
+        """Return the time in s for which a bundle occupies a station."""
         return float(station.bundle_transfer_s)
 
 
@@ -166,7 +166,7 @@ def find(reference: str) -> type[StationKind]:
     Raises
     ------
     InputError
-        If there is no kind of that name.
+        If there is no such kind, or its class cannot be imported.
     """
     if not is_reference(reference):
         known = {**_installed(), **_SHIPPED}

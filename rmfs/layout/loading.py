@@ -57,7 +57,7 @@ def load_with_notes(
     Raises
     ------
     InputError
-        If the layout cannot be found, read or generated; one line lists every problem.
+        If the layout cannot be found, read or generated; one line lists all errors.
     """
     path = instances.locate("layouts", str(name_or_path))
     source = str(path)
@@ -98,7 +98,7 @@ def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layou
 
 
 def split_factors(overrides: Sequence[Override]) -> tuple[list[Override], list[Override]]:
-    """Separate overrides of a generated layout into parameters and factors applied afterwards."""
+    """Return the overrides of parameters, and those of factors, which are applied afterwards."""
     is_factor = [path[0] in FACTORS for path, _ in overrides]
     pairs = list(zip(overrides, is_factor, strict=True))
     return [one for one, late in pairs if not late], [one for one, late in pairs if late]

@@ -24,10 +24,10 @@ BLOCKED = "@OTW"
 """Signs of cells that cannot be entered; all others (`.GSE`) are free."""
 
 MOST_CELLS = 1_200_000
-"""Size limit of a map; the largest published ones have 1024 x 1024 cells."""
+"""Maximum number of cells of a map; the largest published ones have 1024 x 1024."""
 
 LARGEST_MIB = 8
-"""Size limit of a file, line ends included."""
+"""Maximum size of a file in MiB, line ends included."""
 
 KIND = RobotKind(0.35, 1.0, 1.0, 1.5, 2.5, 2.2)
 """The robot of the default layout, since these files specify no size or speed."""
@@ -39,13 +39,13 @@ def read_map(path: Path, robots: list[int] | None = None) -> Layout:
     Parameters
     ----------
     robots
-        Cells (row times width plus column) where robots stand. Default: the first free cell of
-        each row with one, at most ten.
+        Cells (row times width plus column) where robots stand. Default: the first free
+        cell of each of the first ten rows that have one.
 
     Raises
     ------
     InputError
-        If the file is not a grid map, or a robot does not stand on a free cell.
+        If the file is not a grid map, or robots do not stand on different free cells.
     """
     free = _free(path)
     number = cell_waypoints(free)
@@ -100,7 +100,7 @@ def read_cells(path: Path) -> NDArray[np.int64]:
 
 
 def cell_waypoints(free: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Number the free cells row by row."""
+    """Return the number of each free cell, counted row by row, and -1 elsewhere, shape (H, W)."""
     number = np.full(free.shape, -1, np.int64)
     number[free] = np.arange(free.sum())
     return number

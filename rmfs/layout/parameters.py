@@ -1,8 +1,8 @@
 """The parameters of the default layout, as in a `rmfs-layout/1` file.
 
-Names and default values follow the layout parameters of RAWSim-O (paper, section 3.1.1; its file
-format .xlayo), in plain words and with the unit as suffix. Parameters are explained only by their
-`Field` descriptions, which `rmfs layout new` writes as comments.
+Names and default values follow the layout parameters of RAWSim-O (RAWSim-O paper, section 3.1.1;
+its file format .xlayo), in plain words and with the unit as suffix. Parameters are explained only
+by their `Field` descriptions, which `rmfs layout new` writes as comments.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ class PerSide(Strict):
 
     west: Amount = Field(0, description="on the side with the smallest x")
     east: Amount = Field(0, description="on the side with the largest x")
-    south: Amount = Field(0, description="on the side with the smallest y")
-    north: Amount = Field(0, description="on the side with the largest y")
+    south: Amount = Field(0, description="on the side with the largest y")
+    north: Amount = Field(0, description="on the side with the smallest y")
 
     @property
     def total(self) -> int:
@@ -47,7 +47,7 @@ class OtherStations(PerSide):
 class LayoutParameters(Strict):
     """Parameters of a generated layout.
 
-    All problems are reported together: every invalid value, and every violated condition between
+    All errors are reported together: every invalid value, and every violated condition between
     values that are valid individually.
     """
 

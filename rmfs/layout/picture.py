@@ -1,4 +1,4 @@
-"""Draws a layout in the style of the paper's figure 4."""
+"""Draws a layout in the style of figure 4 of the RAWSim-O paper."""
 
 from __future__ import annotations
 

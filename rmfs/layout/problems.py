@@ -1,15 +1,15 @@
-"""Collects all problems of a file in one line."""
+"""Reports all errors in a file in one line."""
 
 from __future__ import annotations
 
 from rmfs.errors import InputError
 
 MOST_PROBLEMS = 10
-"""Maximum number of problems listed in a message; the rest are counted."""
+"""Maximum number of errors listed in a message; the rest are counted."""
 
 
 def stop_if_any(problems: list[str], source: object) -> None:
-    """Raise an error if there are problems.
+    """Raise an exception if a list of errors is not empty.
 
     Parameters
     ----------
@@ -19,7 +19,7 @@ def stop_if_any(problems: list[str], source: object) -> None:
     Raises
     ------
     InputError
-        One line with the first of them and the number of the others.
+        One line with the first errors and the number of the rest.
     """
     if problems:
         more = len(problems) - MOST_PROBLEMS

@@ -37,7 +37,8 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     Actions 0 to k - 1 choose one of the k best candidates, in order of their ranking. Action k
     declines: it ends a turn, or answers that there is nothing to choose. With `rule`, action k + 1
     follows the installed rule of the problem. Questions with only one possible action are skipped.
-    An impossible action counts as declining and sets `info["invalid"]`.
+    An impossible action sets `info["invalid"]` and counts as declining or, where declining is
+    impossible, as action 0.
 
     Observations are a dictionary with `global`, shape (G,), `candidates`, shape (k, F), and
     `action_mask`, or, if flat, one vector with the first two concatenated. The features are
@@ -152,7 +153,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start a run with the given seed, or with one drawn from the previous seed."""
+        """Start a run with the given seed, or with one drawn by the environment."""
         super().reset(seed=seed)
         if seed is None:
             seed = int(self.np_random.integers(LARGEST_SEED))
@@ -180,7 +181,10 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return self._observation(mask), run.reward.take(), False, self._options is None, info
 
     def render(self) -> Any:
-        """Draw the current state of the warehouse, shape (height, width, 3)."""
+        """Return a picture of the warehouse, shape (height, width, 3).
+
+        The result is None without `render_mode`.
+        """
         if self.render_mode != "rgb_array":
             return None
         from rmfs.learning.rendering import picture
@@ -190,8 +194,8 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def advised(self) -> int:
         """Return the action that agrees with the installed rule (only with `rule`).
 
-        This is the candidate that the rule would choose, if it is offered, and otherwise the action
-        that follows the rule.
+        This is the candidate that the rule would choose, if it is offered; declining, if the rule
+        declines; and otherwise the action that follows the rule.
         """
         options = self._options
         if options is None or not self._with_rule:

@@ -52,11 +52,11 @@ class Episodes:
     reward
         See `rmfs.learning.rewards.reward_of`.
     measured
-        Whether runs have results.
+        Whether runs are measured, so that they have results.
     """
 
     KEPT = 8
-    """Number of runs kept in the state before their first event."""
+    """Maximum number of runs kept in the state before their first event."""
 
     def __init__(
         self,

@@ -136,7 +136,7 @@ class Observing:
         self._rankings = {**RANKINGS, **_checked(rankings or {})}
 
     def options(self, decision: Decision, *, may_move: bool) -> Options:
-        """Find the best candidates of a question.
+        """Return the best candidates of a question, with their features and the mask of actions.
 
         Parameters
         ----------

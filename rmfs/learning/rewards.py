@@ -73,7 +73,7 @@ class Lateness(Reward):
     """Minus the seconds by which an order was late, when it is completed."""
 
     def order_completed(self, order: Order) -> None:
-        """Add the seconds of an order."""
+        """Subtract the seconds by which the order is late."""
         self.amount -= max(0.0, order.completed_s - order.due_s)
 
 
@@ -81,7 +81,7 @@ class LateOrders(Reward):
     """-1 for every order completed after its due time."""
 
     def order_completed(self, order: Order) -> None:
-        """Count an order."""
+        """Subtract 1 if the order is late."""
         self.amount -= order.completed_s > order.due_s
 
 
@@ -89,7 +89,7 @@ class Turnover(Reward):
     """Minus the seconds from arrival to completion, when an order is completed."""
 
     def order_completed(self, order: Order) -> None:
-        """Add the seconds of an order."""
+        """Subtract the seconds from the order's arrival to its completion."""
         self.amount -= order.completed_s - order.created_s
 
 
@@ -109,7 +109,7 @@ class Distance(Reward):
         self._known_m = 0.0
 
     def take(self) -> float:
-        """Return the metres since the last call."""
+        """Return minus the metres driven since the last call."""
         self._catch_up()
         return super().take()
 

@@ -48,9 +48,10 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     impossible, because an earlier robot took the work, counts as waiting.
 
     An observation consists of `observation`, shape (3 S + 4,), and `action_mask`. The vector
-    contains for each station the travel time in s / 30, units (or pods with bundles) without a
-    robot / 10, and robots at work / 5; for the robot, whether it is asked and whether it carries a
-    pod; and for the run, the time left and the waiting orders / 100. Rewards are shared: each robot
+    contains S travel times to the stations in s / 30; S numbers of units (at replenishment
+    stations, of pods with bundles) without a robot / 10; S numbers of robots at work for the
+    stations / 5; whether the robot is asked, and whether it carries a pod; the share of the run
+    that is left; and the number of waiting orders / 100. Rewards are shared: each robot
     receives the sum.
 
     Parameters
@@ -116,7 +117,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Begin a run."""
+        """Start a run with the given seed, or with one drawn by the environment."""
         if seed is not None:
             self._random = np.random.default_rng(seed)
         else:
@@ -153,7 +154,10 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
         )
 
     def render(self) -> Any:
-        """Draw the warehouse as it is, shape (height, width, 3)."""
+        """Return a picture of the warehouse, shape (height, width, 3).
+
+        The result is None without `render_mode`.
+        """
         if self.render_mode != "rgb_array":
             return None
         from rmfs.learning.rendering import picture

@@ -1,7 +1,7 @@
 """Training of linear rules by CMA-ES, an evolution strategy without gradients.
 
-Every weight vector is a controllers file. Its value is computed from the footprints of runs with
-several seeds, which are the same for all vectors (common random numbers).
+Every weight vector makes a set of controllers. Its value is the mean objective of runs with several
+seeds, which are the same for all vectors (common random numbers).
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class Task:
     problems
         Problems to train, keys of `TRAINED`.
     objective
-        Weights of footprint columns, whose sum is maximised.
+        Weight of each footprint column in the sum that is maximised.
     seeds
         Seeds of the runs of each weight vector.
     set
@@ -62,7 +62,7 @@ class Task:
     Raises
     ------
     InputError
-        If a problem cannot be trained or a column does not exist.
+        If a problem cannot be trained, a column does not exist, or a sequence is empty.
     """
 
     layout: str
@@ -87,7 +87,7 @@ class Task:
     def start(self) -> NDArray[np.float64]:
         """Return the default weights of the linear rules as one vector.
 
-        The weights of each kind of question are normalised by the greatest of them.
+        The weights of each kind of question are divided by the greatest absolute value among them.
         """
         found = [list(default_weights(kind).values()) for kind in self._kinds()]
         return np.concatenate([np.array(one) / max(map(abs, one)) for one in found])
@@ -114,7 +114,7 @@ class Task:
         return ControllerSettings("linear", told, choices)
 
     def worth(self, weights: NDArray[np.float64], seed: int) -> float:
-        """Simulate one run and return the value of the objective."""
+        """Simulate one run and return the objective; a column that is not finite counts as 0."""
         given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", IdleRuleWarning)  # some weight vectors are bad
@@ -135,7 +135,7 @@ class Trained:
     settings
         The trained controllers, to be written with `rmfs.control.toml.to_toml`.
     value, start_value
-        Mean of the objective over the training seeds, at the end and at the start.
+        Mean of the objective over the training seeds, with the trained and the default weights.
     history
         One row per generation: `generation`, `best`, `mean`, `runs` and `wall_s` so far.
     """

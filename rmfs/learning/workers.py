@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Shapes = dict[str, tuple[tuple[int, ...], str]]
 
 FEW_COLLECTIONS = 50_000
-"""Number of allocations between garbage collections, as runs create hardly any reference cycles."""
+"""Number of allocations between garbage collections; large, as runs create few cycles."""
 
 
 def shapes_of(env: DecisionEnv) -> Shapes:
@@ -61,7 +61,7 @@ class Board:
 
     @classmethod
     def made(cls, shapes: Shapes, count: int, context: Any) -> Board:
-        """Allocate the memory."""
+        """Return a board with memory for `count` environments."""
         sizes = {
             name: max(int(np.prod(shape)) * np.dtype(kind).itemsize * count, 1)
             for name, (shape, kind) in shapes.items()

@@ -31,7 +31,7 @@ class BundleSource:
     return_share
         Probability that a bundle is a return of a single unit from a customer.
     path
-        Further numbers of the substream, for bundles that are counted separately.
+        Further numbers of the substream, for bundles that are numbered separately.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class BundleSource:
         self._return_share = return_share
 
     def draw(self, ordinal: int) -> BundleContent:
-        """Draw the bundle with an ordinal, 0 or greater."""
+        """Return bundle number `ordinal`, 0 or greater; equal ordinals give equal bundles."""
         uniform = self._substreams.at(ordinal)
         sku = self._pick(uniform())
         if self._return_share and uniform() < self._return_share:

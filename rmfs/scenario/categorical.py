@@ -20,8 +20,9 @@ class Categorical:
 
     Weights are converted to integers that sum to about `SCALE`, and a uniform number in [0, 1) to
     an integer below their sum. Because integers are compared, a draw is the same on every platform:
-    last-bit differences in a weight, between mathematics libraries, vanish in the rounding. No
-    probability changes by more than 1e-12, and a positive weight never becomes zero.
+    last-bit differences in a weight, between mathematics libraries, vanish in the rounding.
+    Rounding changes no probability by more than about K / `SCALE`, and a positive weight never
+    becomes zero.
 
     Parameters
     ----------

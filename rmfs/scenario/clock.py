@@ -55,7 +55,9 @@ class Cycle:
         return (time_us + self._gone_us) % self.length_us
 
     def times_us(self, phases_us: Sequence[int]) -> Iterator[tuple[int, int]]:
-        """Yield, without end, each time at which a given phase of the cycle occurs, and its index.
+        """Yield pairs of a time from zero on at which a phase occurs and the index of the phase.
+
+        The times ascend without end.
 
         Parameters
         ----------
@@ -89,7 +91,7 @@ class _Times:
 
 
 class Openings:
-    """Periods in which generation is down.
+    """Down periods, in which nothing is generated.
 
     Parameters
     ----------
@@ -113,11 +115,11 @@ class Openings:
         self.always = not self._borders
 
     def is_open(self, time_us: int) -> bool:
-        """Return whether things are generated at a time; a period excludes its end."""
+        """Return whether a time is outside all down periods, which exclude their ends."""
         return self.open_from_us(time_us) == time_us
 
     def open_from_us(self, time_us: int) -> int:
-        """Return the first time, from a given one on, at which things are generated."""
+        """Return the first time, not before a given one, that is outside all down periods."""
         while self._borders:
             phase_us = self._cycle.phase_us(time_us)
             passed = bisect_right(self._borders, phase_us)

@@ -92,7 +92,7 @@ Weights = Annotated[
 
 
 class ListedCount(Block):
-    """Values 1, 2, ... with a weight each, up to 1000."""
+    """Values 1, 2, ..., n with a relative weight each; n is at most 1000."""
 
     distribution: Literal["listed"] = "listed"
     weights: Weights

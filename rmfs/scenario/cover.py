@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 def bundles_to_cover(scenario: Scenario, skus: SkuSet) -> list[int]:
-    """Return the SKUs of the bundles to stock initially for a scenario's file of orders.
+    """Return the SKUs of the bundles to stock first for a scenario's file of orders.
 
-    The bundles of each SKU contain at least `stock.order_cover` times the units ordered before the
-    end of the run. The largest bundles come first, because small ones fit into the
-    remaining space.
+    There is one entry per bundle. The bundles of each SKU contain at least `stock.order_cover`
+    times the units ordered up to the end of the run. The largest bundles come first, because small
+    ones fit into the remaining space. The list is empty if `stock.order_cover` is 0.
 
     Raises
     ------

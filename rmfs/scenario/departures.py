@@ -17,7 +17,7 @@ class Departures:
     Parameters
     ----------
     given
-        Departure times.
+        The table `orders.due` of a scenario.
     gone_s
         Time by which the cycle has advanced at time zero.
     """

@@ -80,7 +80,7 @@ class ClassesDue(Block):
         return partial(_by_class, self._bounds(), tuple(one.offset_s for one in self.classes))
 
     def class_of(self, uniform: float) -> int:
-        """Return the class whose offset the sampler returns for the same number."""
+        """Return the index of the class whose offset the sampler returns for the same number."""
         return bisect_right(self._bounds(), uniform)
 
     def _bounds(self) -> tuple[float, ...]:
@@ -159,7 +159,7 @@ NO_CLASS = -1
 
 
 def class_of(due: Due, uniform: float) -> int:
-    """Return the class of the order whose offset is drawn with `uniform`, or `NO_CLASS`."""
+    """Return the index of the class of an order with offset drawn by `uniform`, or `NO_CLASS`."""
     return due.class_of(uniform) if isinstance(due, ClassesDue) else NO_CLASS
 
 

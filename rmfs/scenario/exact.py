@@ -19,7 +19,7 @@ SIGNIFICANT_BITS = 30
 """Precision that `significant` keeps: about nine decimal digits."""
 
 SPACE_STEPS = 2**20
-"""Steps per space unit: about a millionth, so that 2**33 space units still add up exactly."""
+"""Number of steps in a space unit; up to 2**33 space units still add up exactly."""
 
 
 def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -31,7 +31,7 @@ def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def space(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Round down to multiples of 1 / `SPACE_STEPS` space units, but at least one.
+    """Round down to multiples of 1 / `SPACE_STEPS` space units, with a minimum of one step.
 
     Sums and differences of such spaces are exact, so the space used on a pod does not drift and
     does not depend on the order of operations. Values are rounded down so that ten units of 0.1 fit

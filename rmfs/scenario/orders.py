@@ -49,7 +49,7 @@ class OrderContent(NamedTuple):
 
 
 class OrderSource:
-    """Draws orders of SKUs that are in stock (design: backlog demand).
+    """Draws orders of SKUs that are in stock.
 
     Order k is drawn from substream (seed, k), so it depends only on the seed, its ordinal and the
     stock: two runs with the same seed get the same orders until their stock differs. If the SKU of
@@ -68,7 +68,7 @@ class OrderSource:
     source
         Name of the scenario, for messages.
     path
-        Further numbers of the substream, for orders that are counted separately.
+        Further numbers of the substream, for orders that are numbered separately.
 
     Raises
     ------
@@ -97,7 +97,7 @@ class OrderSource:
         self._by_affinity = None if skus.affinity is None else skus.affinity.samplers(len(skus))
 
     def draw(self, ordinal: int, uncommitted: NDArray[np.int64]) -> OrderContent | None:
-        """Draw the order with an ordinal, given the stock.
+        """Draw order number `ordinal`, given the stock.
 
         Parameters
         ----------

@@ -25,12 +25,12 @@ LONGEST_S = 86400.0
 
 
 class UnitTimes:
-    """Distribution of picking times, before effects of the picker.
+    """Distribution of the picking time of a unit, before effects of the picker.
 
     Parameters
     ----------
     given
-        Parameters of the scenario.
+        The table `pickers.unit_time` of a scenario.
 
     Raises
     ------
@@ -62,18 +62,18 @@ class UnitTimes:
         return station_s
 
     def mean_s(self, station_s: float) -> float:
-        """Return the mean of the distribution."""
+        """Return the mean of the distribution, in s."""
         return station_s if self._measured is None else float(self._measured.mean())
 
     def least_s(self, station_s: float) -> float:
-        """Return the lower bound of the distribution; 0 if it has no positive one."""
+        """Return the lower bound of the distribution, in s; 0 if it has no positive one."""
         if isinstance(self._given, GammaTime | LognormalTime):
             return 0.0
         return station_s if self._measured is None else float(self._measured.min())
 
 
 def learned(given: Learning | None, units: float) -> float:
-    """Return the factor on the time of the next unit after a number of units.
+    """Return the factor on the time of the next unit after a number of units in this run.
 
     Unit n takes T1 (M + (1 - M) n**-b) with b = -log2(rate): Wright (1936) for M = 0, De Jong
     (1957) with the incompressible share M. The factor is relative to unit number `standard_units`.
@@ -87,7 +87,7 @@ def learned(given: Learning | None, units: float) -> float:
 
 
 def least_factor(given: Pickers) -> float:
-    """Return the minimum factor on the drawn time of a unit; 0 if there is none.
+    """Return a lower bound of the factor on the drawn time of a unit; 0 if none above 0 is known.
 
     Fatigue and errors only increase the time.
     """
@@ -101,7 +101,7 @@ def least_factor(given: Pickers) -> float:
 
 
 def measured_s(path: Path) -> NDArray[np.float64]:
-    """Read measured times: a CSV file with a column `time_s`.
+    """Return the times of a CSV file with a column `time_s`, in s, shape (n,).
 
     Raises
     ------

@@ -1,11 +1,11 @@
-"""Collects all problems of a file in one line."""
+"""Collects the errors in a file, to report them in one line."""
 
 from __future__ import annotations
 
 from rmfs.errors import InputError
 
 MOST_SHOWN = 10
-"""Maximum number of problems listed in a message; the rest are counted."""
+"""Maximum number of errors listed in a message; the rest are counted."""
 
 
 class Problems:
@@ -23,18 +23,18 @@ class Problems:
         self.count = 0
 
     def add(self, problem: str) -> None:
-        """Add a problem; memory use does not grow with the number of problems."""
+        """Add an error; memory use does not grow with the number of errors."""
         self.count += 1
         if len(self._shown) < MOST_SHOWN:
             self._shown.append(problem)
 
     def stop_if_any(self) -> None:
-        """Raise an error if there are problems.
+        """Raise an exception if errors were added.
 
         Raises
         ------
         InputError
-            One line with the first problems and the number of the rest.
+            One line with the first errors and the number of the rest.
         """
         if self.count:
             more = self.count - len(self._shown)

@@ -13,7 +13,7 @@ NotNegative = Annotated[float, pydantic.Field(ge=0)]
 Share = Annotated[float, pydantic.Field(ge=0, le=1)]
 Natural = Annotated[int, pydantic.Field(ge=0)]
 Waiting = Annotated[int, pydantic.Field(ge=0, le=100_000)]
-"""Orders that exist at once."""
+"""A number of waiting orders."""
 Count = Annotated[int, pydantic.Field(ge=1, le=1_000_000)]
 
 Number = TypeVar("Number", int, float)
@@ -26,15 +26,15 @@ class Block(Model):
 
 
 def not_below(value: Number, info: pydantic.ValidationInfo, key: str) -> Number:
-    """Return `value` if it is not below that of another key, which is read first.
+    """Return `value` if it is at least that of another key, which is validated first.
 
     Because the later field is checked, the two are compared even if other keys of the table are
-    wrong, so that one message lists all problems. A key that is wrong itself is not compared.
+    wrong, so that one message lists all errors. A key that is wrong itself is not compared.
 
     Raises
     ------
     ValueError
-        If it is below.
+        If `value` is less.
     """
     least = info.data.get(key)
     if least is not None and value < least:

@@ -31,7 +31,7 @@ class WordSource:
     seed
         The run's seed.
     path
-        Further numbers of the substream, for orders that are counted separately.
+        Further numbers of the substream, for orders that are numbered separately.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class WordSource:
         self._substreams = Substreams(seed, Stream.ORDER_CONTENTS, path)
 
     def draw(self, ordinal: int) -> OrderContent:
-        """Draw the order with an ordinal, 0 or greater."""
+        """Return order number `ordinal`, 0 or greater; equal ordinals give equal orders."""
         uniform = self._substreams.at(ordinal)
         words = self._alphabet.words
         word = words[int(uniform() * len(words))]

@@ -30,7 +30,7 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
 
     Returns
     -------
-    All files written.
+    The paths of all files written, `path` first.
 
     Raises
     ------

@@ -52,7 +52,7 @@ class TripRun:
 
     @property
     def trips_per_h(self) -> float:
-        """Finished trips per hour: to pods, stations, storage places and points."""
+        """Trips finished after the warm-up, per hour: to pods, stations, storage places, points."""
         return len(self.delays_s) / (self.end_s - self.warmup_s) * 3600.0
 
     @property
@@ -65,12 +65,12 @@ class TripRun:
 
     @property
     def idle_robots(self) -> int:
-        """Number of robots that finished no trip."""
+        """Number of robots that finished no trip after the warm-up."""
         return self.layout.robots - len(np.unique(self.traffic.trips()["robot"]))
 
     @property
     def distance_m(self) -> float:
-        """Metres driven by all robots."""
+        """Distance driven by all robots after the warm-up, in m."""
         return float(self.traffic.motion()["distance_m"].sum())
 
 
@@ -93,13 +93,13 @@ def drive(
     duration_s, warmup_s
         Simulated time that is measured, and simulated time before it.
     proven
-        Whether the independent checker should prove the motion safe; requires the trace.
+        Whether the independent checker should prove the motion safe; this records the trace.
     stall_s
         Time without events after which driving is given up if robots wait for a path.
     cost_table_bytes
-        Memory for tables of unhindered times.
+        Memory for tables of unhindered times, in bytes.
     each
-        Called after every instant at which something happened.
+        Called whenever time has advanced, at most to the next event.
     """
     traffic = Traffic(
         layout, record_trace=proven, planner=planner, cost_table_bytes=cost_table_bytes

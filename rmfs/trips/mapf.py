@@ -44,11 +44,14 @@ def scenario(
     try:
         cells = [[int(word) for word in row[4:8]] for row in rows[:count]]
         pairs = [(y * width + x, gy * width + gx) for x, y, gx, gy in cells]
+        outside = next((x for row in cells for x in row[::2] if not 0 <= x < width), None)
     except ValueError:
         raise InputError(
             f"{scen}: expected nine columns a line: bucket, map, its width and "
             "height, start x and y, goal x and y, length"
         ) from None
+    if outside is not None:
+        raise InputError(f"{scen}: x {outside} is outside the map, which has {width} columns")
     layout = read_map(map_file, [start for start, _ in pairs])
     goals = [waypoint_at(number, goal, str(scen)) for _, goal in pairs]
     return layout, lambda: PointTrips([[goal] for goal in goals])
@@ -89,6 +92,8 @@ def _numbered(path: Path) -> list[list[int]]:
     """Read a list of cells, or of chains of cells, that begins with its length."""
     try:
         rows = [[int(cell) for cell in line.replace(",", " ").split()] for line in _lines(path)]
+        if not all(rows):
+            raise ValueError("a line without a number")
     except ValueError:
         raise InputError(f"{path}: expected whole numbers, the number of lines first") from None
     if not rows or rows[0] != [len(rows) - 1]:

@@ -57,8 +57,9 @@ class PodTrips:
     """Robots fetch pods, bring them to stations and store them again.
 
     Pods and free storage places are divided among the robots, so that robots do not affect each
-    other's choices. The number of robots sent to a station is one less than its queue holds;
-    further ones wait where they are (condition W3 of `docs/safety.md`).
+    other's choices. At most one robot less than the queue of a station holds, but at least
+    one, is sent there at a time; further robots wait beneath their pods (condition W3 of
+    `docs/safety.md`).
 
     Parameters
     ----------
@@ -181,7 +182,7 @@ class PointTrips:
 
 
 def random_goals(goals: Sequence[int], seed: int, robot: int) -> Iterator[int]:
-    """Draw an endless sequence of goals without immediate repetition."""
+    """Draw an endless sequence from two or more goals, never the same one twice in a row."""
     draw = generator(seed, Stream.TRIPS, robot)
     last = -1
     while True:
@@ -195,7 +196,12 @@ def random_trips(layout: Layout, seed: int, *, service_s: float = SERVICE_S) -> 
     """Return trips suitable for a layout.
 
     With stations and pods these are `PodTrips`; otherwise robots drive between storage places or,
-    if there are none, between any waypoints.
+    if there are fewer than two, between any waypoints.
+
+    Raises
+    ------
+    InputError
+        If there are fewer pods than robots, or fewer than two waypoints.
     """
     if layout.stations and layout.pods:
         return PodTrips(layout, seed, service_s=service_s)

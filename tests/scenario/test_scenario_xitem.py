@@ -15,6 +15,7 @@ from rmfs.scenario.sources import order_stream
 
 BROKEN_LISTS = [
     ('Count="2"', 'Count="-2"', "order 1: quantity must be from 1"),
+    ('Count="2"', f'Count="{"9" * 5000}"', "order 1: quantity must be a number"),
     ('ItemDescriptionID="4"', 'ItemDescriptionID="5"', "order 1: sku 5 is unknown"),
     ('ItemDescriptionID="4"', 'ItemDescriptionID="9"', "order 1: sku 9 occurs twice in order 1"),
     ('TimeStamp="3.25"', 'TimeStamp="1"', "order 2: time 1 is before that of the order before"),
@@ -35,3 +36,12 @@ def test_broken_order_lists(tmp_path: Path, old: str, new: str, problem: str):
         given = scenario(demand={"mode": "stream", "file": str(path)})
         order_stream(given, sku_set(SkuFile(file=path)))
     assert str(caught.value).startswith(f"{path}: {problem}")
+
+
+def test_a_letter_beyond_unicode_is_no_name(tmp_path: Path):
+    """Neither an error nor a character; the first eight digits alone would be one."""
+    assert 'Letter="98"' in XITEM
+    code = "0000000" + "9" * 20
+    path = tmp_path / "list.xitem"
+    path.write_text(XITEM.replace('Letter="98"', f'Letter="{code}"', 1))
+    assert sku_set(SkuFile(file=path)).names == ()

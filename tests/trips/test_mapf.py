@@ -41,6 +41,22 @@ def test_a_scenario(grid, tmp_path):
         scenario(grid, scen, 3)
 
 
+@pytest.mark.parametrize("cells", ["5 0 4 0", "0 0 -1 1"])
+def test_a_column_outside_the_map_is_refused(grid, tmp_path, cells):
+    """Column 5 of row 0 would be counted as column 0 of row 1."""
+    scen = tmp_path / "grid.scen"
+    scen.write_text(f"version 1\n0 grid.map 5 3 {cells} 4\n")
+    with pytest.raises(InputError, match="is outside the map, which has 5 columns"):
+        scenario(grid, scen)
+
+
+def test_a_line_without_a_cell_is_refused(grid, tmp_path):
+    agents = tmp_path / "a.agents"
+    agents.write_text("2\n0\n,\n")
+    with pytest.raises(InputError, match="expected whole numbers"):
+        league(grid, agents, None)
+
+
 def test_robots_and_tasks_of_the_league(grid, tmp_path):
     agents, tasks = tmp_path / "a.agents", tmp_path / "t.tasks"
     agents.write_text("1\n0\n")

@@ -56,7 +56,8 @@ class Floor:
         Parameters
         ----------
         x_m, y_m, heading_rad
-            Position and heading of the robot; heading 0 points along x, anticlockwise.
+            Position and heading of the robot; heading 0 points along x, positive angles
+            turn anticlockwise.
         rng
             Random stream for glare and noise.
         """

@@ -41,7 +41,7 @@ class RealTime:
         self._zero = time.monotonic()
 
     def tick(self, room: Room) -> bool:
-        """Sleep until the end of the tick."""
+        """Sleep until the time of the tick has come on the wall clock; return true."""
         time.sleep(max(0.0, self._zero + room.now_us / 1e6 - time.monotonic()))
         return True
 
@@ -71,7 +71,11 @@ class InStep:
             self._greet(0)
 
     def tick(self, room: Room) -> bool:
-        """Send the time to the server, and wait until it has processed the tick."""
+        """Send the time to the server, and wait until it has processed the tick.
+
+        Without a connection, time goes on at real speed. The result is false if the server ends the
+        demonstration instead of processing the tick.
+        """
         if not self._link.is_up:
             self._greet(room.now_us)  # nobody there: time goes on as it does
             return True

@@ -71,7 +71,7 @@ class EmulatedRobot:
         self.base.stop()
 
     def step(self, now_us: int) -> None:
-        """Let the program run once."""
+        """Write frames that are due, and run one step of the program, if it is running."""
         if self.wire is not None:
             self.wire.now_us = now_us
             self.wire.pump()
@@ -182,7 +182,7 @@ class Room:
         return {name: wire.written for name, wire in wires.items() if wire and not wire.is_closed}
 
     def fetch(self, sizes: dict[str, int]) -> None:
-        """Wait until robots have received the given numbers of bytes."""
+        """Wait until robots have received given numbers of bytes, or nothing arrives for 0.5 s."""
         for name, size in sizes.items():
             wire = self.robots[name].wire if name in self.robots else None
             if wire is not None:

@@ -32,7 +32,7 @@ class Truth:
     driven_m
         Total distance driven by all robots.
     lateral_mean_m, lateral_max_m
-        Mean and maximum distance of driving robots from their line.
+        Mean and maximum distance of driving robots from the nearest line in their direction.
     """
 
     lines_x_m: list[float]
@@ -46,12 +46,12 @@ class Truth:
 
     @classmethod
     def of(cls, layout: Layout) -> Truth:
-        """Create the measurements for a floor with lines along all edges of a layout."""
+        """Return empty measurements for lines along x and y through the waypoints of a layout."""
         return cls(np.unique(layout.x_m).tolist(), np.unique(layout.y_m).tolist())
 
     @property
     def lateral_mean_m(self) -> float:
-        """Mean distance of driving robots from their line."""
+        """Mean distance of driving robots from the nearest line in their direction."""
         return self._lateral_sum / self._looks if self._looks else 0.0
 
     def look(self, bases: Sequence[EmulatedBase], seconds: float) -> None:

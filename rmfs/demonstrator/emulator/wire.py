@@ -76,7 +76,10 @@ class UnkindWire:
             self.written += len(frame)
 
     def fetch(self, upto: int | None = None, timeout_s: float = 5.0) -> None:
-        """Read from the connection until a total number of bytes has been received."""
+        """Read what has arrived; with `upto`, read until this total number of bytes is received.
+
+        Reading also ends if nothing arrives for `timeout_s`, or the connection is closed.
+        """
         while not self.is_closed:
             data = self._tcp.read()
             if data is None:

@@ -27,7 +27,7 @@ _log = logging.getLogger("rmfs.robot")
 
 
 def main(arguments: list[str] | None = None, camera: Callable[[], Camera] | None = None) -> int:
-    """Drive a robot until interrupted; if the program dies, the motors stop and it begins again.
+    """Drive a robot until interrupted; stop the motors and restart the program when it dies.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def main(arguments: list[str] | None = None, camera: Callable[[], Camera] | None
 
 
 def drive(options: argparse.Namespace, camera: Camera, alive: Callable[[], None]) -> None:
-    """Run the program step by step."""
+    """Run the program step by step until it fails, and call `alive` after each step."""
     host, _, port = options.server.rpartition(":")
     secret = options.secret.read_bytes().strip()
     base = Create2(serial.Serial(options.base, BAUD, timeout=ANSWER_S))
@@ -71,7 +71,7 @@ def drive(options: argparse.Namespace, camera: Camera, alive: Callable[[], None]
 
 
 def stop(base: str) -> None:
-    """Stop the motors, whatever state the base is in."""
+    """Stop the motors, whatever state the base is in; log an error if its port fails."""
     try:
         with serial.Serial(base, BAUD, timeout=ANSWER_S) as port:
             create = Create2(port)

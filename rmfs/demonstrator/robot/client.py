@@ -62,7 +62,7 @@ class TcpWire:
         return self._socket.fileno()
 
     def read(self) -> bytes | None:
-        """Return the bytes that have arrived."""
+        """Return the bytes that have arrived, possibly none; None if the connection is closed."""
         self._push()
         try:
             return self._socket.recv(65_536) or None

@@ -60,7 +60,7 @@ class Create2:
         self.port.write(bytes([_START, _SAFE]))
 
     def drive(self, left_m_s: float, right_m_s: float) -> None:
-        """Set the speed of the wheels."""
+        """Set the speeds of the wheels, each limited to 0.5 m/s forwards and backwards."""
         right, left = (_millimetres(speed) for speed in (right_m_s, left_m_s))
         self.port.write(bytes([_DRIVE_DIRECT]) + _two_bytes(right) + _two_bytes(left))
 

@@ -32,7 +32,7 @@ def guarded(
     stop
         Function that stops the robot, called when the program has ended.
     patience_s
-        Time without a step after which the program is killed, in s.
+        Time without a step after which the program is killed, in s, from its first step on.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Detection of the line on the floor in a camera image (paper, section 4).
+"""Detection of the line on the floor in a camera image (RAWSim-O paper, section 4).
 
 Pixels within a colour range are kept, small specks are removed by erosion, and the largest contour
 is taken as the line. The middle of its lower end gives its position.
@@ -39,7 +39,7 @@ class VideoCamera:
             raise OSError(f"no camera {number}")
 
     def frame(self) -> NDArray[np.uint8]:
-        """Return an image."""
+        """Return an image (see `Camera`)."""
         good, image = self._video.read()
         if not good:
             raise OSError("the camera gives no image")

@@ -82,12 +82,18 @@ class Order:
             raise ProtocolError(f"no order: {error!r}") from None
 
     def cut(self, upto: int) -> None:
-        """End the order after `upto` waypoints, or at the robot's position if it is further."""
+        """End the order after `upto` waypoints, or after those reached if these are more."""
         upto = max(upto, self.passed)
         del self.tags[upto:], self.metres[upto:]
 
     def to_stop_m(self, rolled_m: float) -> float:
-        """Remaining distance to the last granted waypoint, given that since the last one."""
+        """Return the distance to the last granted waypoint, in m; negative beyond it.
+
+        Parameters
+        ----------
+        rolled_m
+            Distance rolled since `since`.
+        """
         granted = min(self.granted, len(self.tags))
         return sum(self.metres[self.passed : granted]) - rolled_m - self.ahead_m
 

@@ -14,7 +14,7 @@ class Pid:
     proportional, integral, derivative
         Weights of the error, of its integral over time (per second) and of its change (seconds).
     limit
-        Limit of the absolute output; while it is reached, the integral is not updated.
+        Limit of the absolute output; while it is exceeded, the integral is not updated.
     """
 
     proportional: float

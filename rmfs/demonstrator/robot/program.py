@@ -46,7 +46,8 @@ class Settings:
     search_m, searches
         Distance around the place that is searched for a missed tag, and number of searches.
     steering
-        PID controller from the offset in m to the angular speed in rad/s.
+        Weights and limit of the PID controller (`Pid`) from the offset in m to the angular speed in
+        rad/s.
     """
 
     speed_m_s: float = 0.21

@@ -82,7 +82,7 @@ class Unpacker:
 
 
 def text_of(message: Message, name: str, longest: int = 64) -> str:
-    """Return a text field of a message; raise ProtocolError if it is missing."""
+    """Return a text field; raise ProtocolError if it is missing, empty, too long or no text."""
     value = message.get(name)
     if not isinstance(value, str) or not 0 < len(value) <= longest:
         raise ProtocolError(f"{name} = {value!r}; it is a text of 1 to {longest} characters")
@@ -90,7 +90,7 @@ def text_of(message: Message, name: str, longest: int = 64) -> str:
 
 
 def whole(message: Message, name: str) -> int:
-    """Return an integer field of a message; raise ProtocolError if it is missing."""
+    """Return an integer field; raise ProtocolError if it is missing, negative or no integer."""
     value = message.get(name)
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise ProtocolError(f"{name} = {value!r}; it is a whole number, not negative")

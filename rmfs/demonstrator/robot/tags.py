@@ -27,7 +27,7 @@ class SerialTagReader:
         self._last: str | None = None
 
     def read(self) -> str | None:
-        """Return a tag detected since the previous call, or None."""
+        """Return the last tag read since the previous call, or None; a repeated tag is left out."""
         found = None
         for byte in self._port.read(256):
             if byte not in b"\r\n":

@@ -39,7 +39,7 @@ class Clock(Protocol):
 
 
 class WallClock:
-    """The wall clock; the demonstration begins when it is created."""
+    """The wall clock; the demonstration is at `begin_us` when the clock is created."""
 
     def __init__(self, begin_us: int = 0) -> None:
         self._zero = time.monotonic() - begin_us / 1e6
@@ -63,7 +63,13 @@ class RoomClock:
         self._expected: dict[str, int] = {}
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Read until the room has reached the time and its robots' bytes have arrived."""
+        """Read until the room has reached the time and its robots' bytes have arrived.
+
+        Raises
+        ------
+        RoomGoneError
+            If the room has sent no tick for `PATIENCE_S`.
+        """
         messages: list[tuple[str, Message]] = []
         begun = time.monotonic()
         while not self._is_complete(hub, time_us):

@@ -36,7 +36,7 @@ class Demonstration:
     tags
         The tag of every waypoint.
     journal
-        File of received messages; a run resumes where it ends.
+        File of received messages; if it exists, the run repeats it and goes on from its end.
     is_emulated
         Whether the robots are in an emulated room, which keeps the clock.
     past_failure
@@ -92,7 +92,7 @@ class Demonstration:
 
 
 def expected(robots: dict[str, int], *, is_emulated: bool) -> list[str]:
-    """Return the names of all clients that may connect."""
+    """Return the names of all clients that may connect: the robots, and an emulated room."""
     return [*robots, ROOM] if is_emulated else [*robots]
 
 

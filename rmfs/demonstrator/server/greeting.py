@@ -18,7 +18,7 @@ from rmfs.demonstrator.robot.protocol import (
 
 
 class Guest(NamedTuple):
-    """A client that has identified itself, the key of its session, and bytes received beyond."""
+    """A client that has identified itself: name, key of its session, bytes after its hello."""
 
     name: str
     key: bytes

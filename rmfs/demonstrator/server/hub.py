@@ -107,7 +107,7 @@ class Hub:
         )
 
     def traffic_of(self, name: str) -> tuple[int, int]:
-        """Return the number of bytes received from and sent to a client since it connected."""
+        """Return the numbers of bytes received from and sent to a client in its present session."""
         session = self._sessions.get(name)
         return (session.received, session.sent) if session else (0, 0)
 
@@ -126,7 +126,7 @@ class Hub:
         return inbox
 
     def send(self, name: str, message: Message) -> None:
-        """Send a message; without a session it is dropped, as a new session sends everything."""
+        """Send a message; without a session it is dropped, as a new session repeats the order."""
         session = self._sessions.get(name)
         if session is not None and session.channel is not None:
             session.channel.send(message)

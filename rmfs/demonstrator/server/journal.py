@@ -59,7 +59,7 @@ class Journal:
             self._write({"time_us": left_out, "left_out": True})
 
     def heard_at(self, time_us: int) -> Heard:
-        """Return the messages received at a past time; none if they are left out."""
+        """Return the messages and the silent robots of a past tick; none if they are left out."""
         if time_us in self.left_out:
             return [], frozenset()
         return self._by_time.get(time_us, ([], frozenset()))
@@ -67,7 +67,7 @@ class Journal:
     def note(
         self, time_us: int, messages: list[tuple[int, Message]], silent: frozenset[int]
     ) -> None:
-        """Record received messages before they are processed."""
+        """Record received messages and silent robots before they are processed."""
         self._write({"time_us": time_us, "heard": messages, "silent": sorted(silent)})
 
     def note_failure(self, time_us: int, error: str) -> None:

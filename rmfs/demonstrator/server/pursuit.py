@@ -41,7 +41,7 @@ class Pursuit:
     granted
         Number of waypoints to which the robot may drive: 0 until it has turned.
     troubles
-        Number of times since the last waypoint that it has reported being stuck.
+        Number of times the robot has reported trouble since its last confirmed waypoint.
     """
 
     number: int
@@ -66,7 +66,7 @@ class Pursuit:
         return cls(number, move, heading_rad, waypoints, along, seconds, turned=turned)
 
     def next_us(self, move: PlannedMove) -> int:
-        """Planned time of the robot at its next unconfirmed waypoint.
+        """Return the planned time of the robot at its first unconfirmed waypoint, or at its end.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class Pursuit:
         del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
 
     def follow(self, move: PlannedMove, layout: Layout, robot: int) -> None:
-        """Follow a move that is the same run, cut short: it has other times."""
+        """Replace the move by the same run cut short, which has its own times."""
         self.move = move
         self.waypoints, self.along_m, self.seconds = _course(layout, move, robot)
 

@@ -24,9 +24,9 @@ class RealRobot:
     index
         Index of the robot in the layout.
     heading_rad
-        Its heading after completing its pursuit.
+        Its heading after its last completed order.
     pursuit
-        The order it is carrying out.
+        Its latest order, in progress or completed; None before the first.
     is_present
         Whether there is a session with it.
     heard_us

@@ -22,7 +22,7 @@ CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 
 
 def check(layout: Layout) -> list[Violation]:
-    """Return everything that is wrong with a layout, impossible things first.
+    """Return all violations of a layout, those with severity "impossible" first.
 
     The check covers: there are robots, and stations of both kinds; every endpoint (storage place,
     station, elevator) can be reached and left, with and without load; the aisles are strongly

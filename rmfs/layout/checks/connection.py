@@ -31,7 +31,7 @@ TO_IT, FROM_IT = "no way leads to it", "no way leads away from it"
 
 
 def connection(layout: Layout) -> Iterator[Violation]:
-    """Yield endpoints that cannot be reached or left."""
+    """Yield endpoints that cannot be reached or left, with or without load, and stuck robots."""
     lost = np.zeros(layout.waypoints, dtype=np.bool_)
     yield from _empty(layout, lost)
     yield from _loaded(layout, lost)

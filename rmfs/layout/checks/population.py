@@ -1,4 +1,4 @@
-"""Checks that a layout has all that a run needs: robots, pods and stations."""
+"""Checks that a layout has robots, and stations of both kinds."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def population(layout: Layout) -> Iterator[Violation]:
-    """Yield a violation for each thing that a run needs and the layout lacks."""
+    """Yield a violation if there are no robots, no pick or no replenishment stations."""
     counts = {
         "robots": layout.robots,
         "pick stations": len(layout.pick_stations),

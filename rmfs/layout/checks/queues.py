@@ -78,7 +78,7 @@ def all_queues(layout: Layout) -> list[Queue]:
 
 
 def queue_lists(layout: Layout) -> Iterator[Violation]:
-    """Yield violations of the order of queue places and of their being private."""
+    """Yield queues that are not chains, are too short, or share places with another."""
     owner: dict[int, str] = {}
     for queue in all_queues(layout):
         yield from _chain(layout, queue)

@@ -41,14 +41,14 @@ class Reach:
         return _search(self._back, goals & self.allowed)
 
     def components(self) -> NDArray[np.int32]:
-        """Return the strongly connected component of each waypoint, shape (N,)."""
+        """Return the number of the strongly connected component of each waypoint, shape (N,)."""
         labels: NDArray[np.int32] = connected_components(
             self._graph, directed=True, connection="strong"
         )[1]
         return labels
 
     def largest(self, counted: Mask) -> Mask:
-        """Return the strongly connected component that holds most of the counted waypoints."""
+        """Return the strongly connected component with the most counted waypoints, shape (N,)."""
         labels = self.components()
         counted = counted & self.allowed
         if not counted.any():

@@ -31,11 +31,14 @@ LONG = 3.0
 """Edges longer than this multiple of the median are compared with all others individually."""
 
 GRID_TOLERANCE = 1e-6
-"""How much wider than needed a grid must be, as a share: positions are off it by less."""
+"""Share by which a grid must be wider than needed; positions may be off the grid by an eighth."""
 
 
 def separation(layout: Layout) -> Iterator[Violation]:
-    """Yield waypoints and edges that come closer than two radii."""
+    """Yield pairs of waypoints or edges nearer to each other than twice the largest radius.
+
+    Edges are checked only if no waypoints are too near.
+    """
     radii = [kind.radius_m for kind in layout.robot_kinds]
     if layout.pods:
         radii.append(layout.pod_radius_m)

@@ -16,7 +16,7 @@ IMPOSSIBLE: Severity = "impossible"
 NOT_WELL_FORMED: Severity = "not well-formed"
 
 MOST_SHOWN = 5
-"""Elements with the same fault that are reported individually; others are only counted."""
+"""Maximum number of elements with the same fault reported individually; the rest are counted."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,8 +75,8 @@ class Drawing:
 
         Places of a queue lead to the place ahead, stations to aisles, aisles to the entrances of
         queues. Storage places lead to all neighbours except queues, since robots without a pod
-        drive beneath pods. A one-way cell leads to aisles only in its direction, and is entered
-        from all other sides.
+        drive beneath pods. A one-way cell leads to aisles only in its direction, and is not
+        entered from the cell ahead.
         """
         places = {cell: (stand, rank) for stand in self.stands for rank, cell in
                   enumerate(stand.queue)}  # fmt: skip

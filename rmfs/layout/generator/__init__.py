@@ -1,4 +1,4 @@
-"""The generator of default layouts (RAWSim-O; paper, section 3.1.1)."""
+"""The generator of default layouts (RAWSim-O paper, section 3.1.1)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Conditions between layout parameters whose values are valid individually.
 
 Every condition names the keys it reads, so that it is skipped when one of them is already known to
-be wrong. It returns a list of problems, each a sentence that starts with the key to change.
+be wrong. It returns a list of errors, each a sentence that starts with the key to change.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ AISLES = ("horizontal_aisles", "vertical_aisles")
 SIZE = (*AISLES, *STATIONS, "block_length", "single_lane", "hall_width", "buffer_width")
 
 MOST_TILES = 4_000_000
-"""Limit set by memory; the largest published layout has 12,000 tiles."""
+"""Maximum number of tiles, set by memory; the largest published layout has 12,000."""
 
 
 def _even_aisles(p: LayoutParameters) -> list[str]:

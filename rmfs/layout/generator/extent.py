@@ -39,12 +39,12 @@ class Extent:
 
     @property
     def rows(self) -> int:
-        """Rows of the tier."""
+        """Number of rows of the tier."""
         return self.height + self.margin[Direction.NORTH] + self.margin[Direction.SOUTH]
 
     @property
     def columns(self) -> int:
-        """Columns of the tier."""
+        """Number of columns of the tier."""
         return self.width + self.margin[Direction.WEST] + self.margin[Direction.EAST]
 
     @property
@@ -107,7 +107,7 @@ def blocks(parameters: LayoutParameters) -> int:
 
 
 def road_tiles(parameters: LayoutParameters) -> int:
-    """Return the number of road tiles of a tier: aisles, ring road and halls."""
+    """Return the number of tiles in aisles, ring road, halls and pockets of a tier."""
     size = extent(parameters)
     rectangle = size.height * size.width - storage_places(parameters)
     open_sides = {side for side in SIDES if size.margin[side]}

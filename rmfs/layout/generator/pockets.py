@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 GOLDEN = 0.618033988749895
-"""Step size, relative to a circle, that covers it evenly."""
+"""Step along a circle of length 1 whose multiples cover the circle evenly."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class Pocket:
 
 
 def pockets(parameters: LayoutParameters, kinds: NDArray[np.int8]) -> list[Pocket]:
-    """Return the stations within the storage area of a tier.
+    """Return the stations within the storage area of a tier; none if there are too few blocks.
 
     Parameters
     ----------

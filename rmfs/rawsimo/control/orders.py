@@ -63,7 +63,7 @@ SIMPLE = {
 """Order batchings whose parameters are converted one by one."""
 
 POA = ("Default", "Foresight", "Queue", *SIMPLE)
-"""All order batchings."""
+"""Names of all order batchings."""
 
 _DEFAULT: dict[str, Element] = {
     **_LANE,
@@ -127,10 +127,15 @@ ROA = {
 def poa(kind: str, block: Settings) -> Table:
     """Return the POA table for an order batching.
 
+    Parameters
+    ----------
+    kind
+        A name of `POA`.
+
     Raises
     ------
     InputError
-        If it is unknown or a value is wrong.
+        If a value is wrong.
     """
     if kind == "Default":
         name = block.choice("OrderSelectionRule", _SELECTIONS, "Random")

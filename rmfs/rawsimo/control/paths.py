@@ -99,7 +99,7 @@ PP = (*_RULES, "Simple", "Dummy")
 def pp(kind: str, block: Settings) -> Table:
     """Return the PP table for a path planning.
 
-    As in RAWSim-O, methods that rmfs has too are granted one straight run at a time.
+    With methods that rmfs also has, a robot is granted one straight run at a time, as in RAWSim-O.
     """
     if kind in _RULES:
         return {**translated(block, _RULES[kind]), "runs_granted": 1}

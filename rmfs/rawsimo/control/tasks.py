@@ -180,7 +180,8 @@ def ta(kind: str, block: Settings) -> Table:
 def pps(kind: str, block: Settings) -> Table:
     """Return the PPS table for the pod selection of a task allocation.
 
-    Robots that choose pods themselves need a dummy; they reserve nothing on their way to a pod.
+    Task allocations that choose pods themselves (Random, BruteForce) get the rule `dummy`, without
+    late picks and bundles.
     """
     selection = block.block("PodSelectionConfig")
     if kind in ("Random", "BruteForce"):

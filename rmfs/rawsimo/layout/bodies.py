@@ -28,7 +28,10 @@ _POD_RADIUS_M = 0.45
 def pods(
     instance: Instance, waypoints: list[Table], occupants: Occupants
 ) -> tuple[list[Table], float]:
-    """Return the pods, each at the waypoint that names it, and their radius in m."""
+    """Return the pods, and the largest of their radii in m.
+
+    A pod stands at the waypoint that names it, or else at the nearest storage place of its tier.
+    """
     nearest = _Nearest(waypoints, [bool(waypoint["storage"]) for waypoint in waypoints])
     radii: Counter[float] = Counter()
     found, searched = [], 0

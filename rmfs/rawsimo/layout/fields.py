@@ -1,4 +1,4 @@
-"""Typed access to the attributes of RAWSim-O's XML elements; all problems are collected."""
+"""Typed access to the attributes of RAWSim-O's XML elements; all errors are collected."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ NOBODY = -1
 
 
 class Problems:
-    """Collects the problems of a file and raises them as one error."""
+    """Collects the errors in a file and raises them as one exception."""
 
     def __init__(self) -> None:
         self.found: list[str] = []
 
     def add(self, problem: str) -> None:
-        """Add a problem."""
+        """Add an error."""
         self.found.append(problem)
 
     def stop(self, source: object) -> None:
-        """Raise an error if there are problems.
+        """Raise an exception if errors were added.
 
         Raises
         ------
         InputError
-            One line with the first problem and the number of the others.
+            One line with the first errors and the number of the rest.
         """
         stop_if_any(self.found, source)
 
@@ -43,7 +43,7 @@ class Fields:
     element
         The element; messages name its tag and `ID`.
     problems
-        Collection of problems; the reader continues with 0 for a wrong value.
+        Collection of errors; the reader continues with 0 for a wrong value.
     """
 
     def __init__(self, element: Element, problems: Problems) -> None:

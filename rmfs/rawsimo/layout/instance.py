@@ -73,7 +73,7 @@ class Instance:
     Attributes
     ----------
     problems
-        Problems that make the file unusable.
+        Errors that make the file unusable.
     remarks
         What was left out or filled in.
     """
@@ -96,17 +96,17 @@ class Instance:
         return (Fields(element, self.problems) for element in self._elements[kind])
 
     def has(self, kind: str, name: int) -> bool:
-        """Return whether there is an element of a kind with that id."""
+        """Return whether there is an element of a kind with the id `name`."""
         return name in self._index[kind]
 
     def position(self, kind: str, name: int, where: str) -> int:
-        """Return the position of an id; if there is none, add a problem and return 0."""
+        """Return the position of an id within its kind; 0, with an error added, if unknown."""
         if not self.has(kind, name):
             self.problems.add(f"{where}: there is no {kind} {name}")
         return self._index[kind].get(name, 0)
 
     def waypoint(self, text: str | None, where: str) -> int:
-        """Return the position of a waypoint given by its id as text."""
+        """Return the position of a waypoint with an id; 0, with an error added, if unknown."""
         try:
             name = int(text or "")
         except ValueError:

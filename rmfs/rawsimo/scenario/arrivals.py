@@ -20,7 +20,7 @@ _TIED_TO = {
 _POISSON_MODES = {"Simple": "constant", "TimeDependent": "steps", "HighLow": "high-low"}
 
 UNBOUNDED_SHARE = 1000.0
-"""Load limit used if capacity is ignored."""
+"""Load limit, as a share of the pods' capacity, that stands for no limit."""
 
 
 class Arrivals:
@@ -220,7 +220,7 @@ class Arrivals:
 
 
 def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[list[float]]:
-    """Convert changes (time in the cycle, whether down from then on) to down periods.
+    """Convert changes (time in the cycle, whether down from then on) to down periods [start, end].
 
     Before the first change, the state is that after the last one, as the cycle repeats.
     """
@@ -235,7 +235,7 @@ def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[
 
 
 def steps(weights: Sequence[tuple[float, float]]) -> dict[str, Any]:
-    """Convert steps (start, weight) to scenario keys; if there are none, use the default ones."""
+    """Convert steps (start, weight) to scenario keys; without steps, return none of them."""
     if not weights:
         return {}
     if weights[0][0] > 0:

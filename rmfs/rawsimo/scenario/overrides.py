@@ -30,7 +30,7 @@ _COUNTS = {
 def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
     """Return the changes of the layout as pairs of path and value.
 
-    A switch is one element, and its value another one whose name begins in the same way.
+    A switch is one element, and its value another element whose name begins with the switch's.
 
     Raises
     ------

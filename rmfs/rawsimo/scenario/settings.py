@@ -19,6 +19,8 @@ _T = TypeVar("_T")
 class Settings:
     """One block of a settings file; remembers which elements have been read.
 
+    An absent element has the default value, or none. A wrong value raises `InputError`.
+
     Parameters
     ----------
     element
@@ -54,7 +56,7 @@ class Settings:
         return list(self._elements)
 
     def error(self, tag: str, problem: str) -> InputError:
-        """Return an error that names an element and its problem."""
+        """Return an exception that names an element and what is wrong with it."""
         return InputError(f"{self._path}: {tag}: {problem}")
 
     def note(self, text: str) -> None:
@@ -72,7 +74,7 @@ class Settings:
         return _kind(self._elements.get(tag))
 
     def choice(self, tag: str, choices: Mapping[str, _T], default: str) -> _T:
-        """Return the value that the word in an element stands for."""
+        """Return the value of the word in an element, which must be among `choices`."""
         word = self.text(tag, default)
         if word not in choices:
             raise self.error(tag, f"must be one of {', '.join(choices)} (given: {word!r:.40})")
@@ -90,11 +92,11 @@ class Settings:
         return int(number)
 
     def switch(self, tag: str, default: bool) -> bool:
-        """Return true or false."""
+        """Return a truth value."""
         return default if tag not in self else self._switch(tag, self.text(tag))
 
     def block(self, tag: str) -> Settings:
-        """Return a block within this one."""
+        """Return a block within this one, empty if it is absent."""
         self._read.add(tag)
         return Settings(self._elements.get(tag), self._path, self._notes)
 
@@ -111,7 +113,7 @@ class Settings:
         )
 
     def words(self, tag: str, choices: Mapping[str, str]) -> list[tuple[float, str]]:
-        """Return a list of keys with the value of each key's word; words are validated."""
+        """Return pairs of a key and the value of its word among `choices`, in order of the keys."""
         found = []
         for key, word in self._pairs(tag):
             if word not in choices:
@@ -129,12 +131,12 @@ class Settings:
         return [self._number(tag, part.strip()) for part in parts]
 
     def weights(self, tag: str) -> dict[str, float]:
-        """Return a list of words and their positive numbers; words with zero are left out."""
+        """Return the number of each word; words with 0 are left out."""
         numbers = {key: self._number(tag, value) for key, value in self._pairs(tag)}
         return {key: number for key, number in numbers.items() if number}
 
     def leave(self, tags: Iterable[str], reason: str) -> None:
-        """Note for known elements why they are not used."""
+        """Note why elements are not used, if they are present, and count them as read."""
         present = [tag for tag in tags if tag in self]
         self._read.update(present)
         if present:

@@ -32,7 +32,7 @@ def read_xgenc(path: Path) -> SkuFileContent:
     Raises
     ------
     InputError
-        One line that names the file and its first problem: wrong XML, an unknown element, a SKU
+        One line that names the file and its first error: wrong XML, an unknown element, a SKU
         that is unknown or listed twice, or a value that is missing or out of range.
     """
     return _Reader(path).content()

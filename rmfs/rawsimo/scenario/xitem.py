@@ -52,7 +52,7 @@ class OrderList:
     path
         The file.
     skus
-        Its SKUs, with popularities in proportion to the units ordered.
+        Its SKUs, with popularities in proportion to the units ordered, or equal without orders.
     notes
         What the reader does not know and has left out.
     """
@@ -69,7 +69,7 @@ class OrderList:
         Raises
         ------
         InputError
-            One line that names the invalid orders.
+            One line that names the first invalid orders.
         """
         problems = Problems(self.path)
         rows = OrderRows(skus, problems, "order")
@@ -90,7 +90,7 @@ class OrderList:
         Raises
         ------
         InputError
-            One line that names the invalid bundles.
+            One line that names the first invalid bundles.
         """
         problems = Problems(self.path)
         rows = BundleRows(skus, problems, "bundle", largest)
@@ -113,7 +113,8 @@ def read_xitem(path: Path) -> OrderList:
     orders = tuple(_order_rows(root))
     ordered: Counter[str] = Counter()
     for _, (_, _, sku, quantity, _) in orders:
-        ordered[sku] += int(quantity) if quantity.isdecimal() else 0
+        # a longer quantity is refused when the orders are requested
+        ordered[sku] += int(quantity) if quantity.isdecimal() and len(quantity) < 19 else 0
     return OrderList(
         path=path,
         skus=_skus(path, root, ordered),
@@ -154,7 +155,7 @@ def _skus(path: Path, root: Element, ordered: Counter[str]) -> SkuFileContent:
 def _name(element: Element) -> str:
     """Return the letter and colour of an SKU, or nothing."""
     code, colour = element.get("Letter", ""), element.get("Color", "")
-    if not code.isdecimal() or int(code[:8]) > 0x10FFFF:
+    if not code.isdecimal() or len(code) > 8 or int(code) > 0x10FFFF:
         return ""
     return f"{chr(int(code))} {colour.lower()}".strip()
 

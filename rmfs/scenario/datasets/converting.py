@@ -30,9 +30,9 @@ class Converted(NamedTuple):
     orders, lines, units, skus
         Numbers of converted orders, lines, units and SKUs.
     first, last
-        Times of the first and the last order.
+        Times of the first and the last order, in ISO 8601, or in s if the data set has no dates.
     left_out
-        Number of omissions by reason.
+        Number of omitted orders or lines, by a text that describes them.
     """
 
     orders: int
@@ -65,17 +65,18 @@ def convert(
     out
         The .csv file to write.
     begin, end
-        Range of order times, without its end. Default: all.
+        Use orders from `begin` on and before `end`. Default: all.
     share
-        Share of these orders to use, drawn order by order.
+        Probability with which each of these orders is used.
     seed
         Seed of the draws.
 
     Raises
     ------
     InputError
-        If a file cannot be read, lacks a column or has an invalid field; if no order is left; or if
-        there are too many.
+        If the layout is unknown; a file is missing, cannot be read, lacks a column or has a wrong
+        field; `out` does not end in .csv or cannot be written; dates are given for a layout without
+        dates; no order is left; or there are more than `MOST_LINES` lines.
     """
     if layout not in LAYOUTS:
         raise InputError(f"layout {layout!r:.40} is unknown; valid: {', '.join(LAYOUTS)}")

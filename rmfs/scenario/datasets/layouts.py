@@ -40,7 +40,7 @@ class Layout(NamedTuple):
 def instacart(paths: Sequence[Path], orders: Orders) -> None:
     """Read orders with weekday and hour, which all fall within one week.
 
-    Orders of the same hour are spread evenly over it. Every line is one unit.
+    Orders of the same weekday and hour are spread evenly over this hour. Every line is one unit.
     """
     whole = ("order_id", "order_dow", "order_hour_of_day")
     hours: dict[tuple[int, int], list[str]] = defaultdict(list)
@@ -105,7 +105,11 @@ def jd(paths: Sequence[Path], orders: Orders) -> None:
 
 
 def olist(paths: Sequence[Path], orders: Orders) -> None:
-    """Read orders and their items of one unit each; due when the first item must be shipped."""
+    """Read orders and their items, one unit each; omit cancelled and unavailable orders.
+
+    An order is due at the earliest shipping limit of its items; limits before the order time are
+    ignored.
+    """
     columns = ("order_id", "order_status", "order_purchase_timestamp")
     for row in rows(paths[0], columns):
         name, moment = row.name("order_id"), row.moment("order_purchase_timestamp")

@@ -48,7 +48,7 @@ class Orders:
     by_name
         Orders by name; None for those not used.
     left_out
-        Number of omissions by reason.
+        Number of omitted orders or lines, by a text that describes them.
     """
 
     takes: Callable[[datetime | float], bool]
@@ -56,7 +56,7 @@ class Orders:
     left_out: Counter[str] = field(default_factory=Counter)
 
     def begin(self, name: str, time: datetime | float) -> Order | None:
-        """Return the order with a name, created if necessary; None if it is not used."""
+        """Return the order with a name, created with this time if it is new; None if not used."""
         if name not in self.by_name:
             taken = self.takes(time)
             self.by_name[name] = Order(time) if taken else None
@@ -64,7 +64,10 @@ class Orders:
         return self.by_name[name]
 
     def taken(self) -> list[tuple[str, Order]]:
-        """Return the orders with lines, by time; those of equal time in the order of the file."""
+        """Return (name, order) for all used orders with lines, by time, then in order of the file.
+
+        Used orders without a line are counted in `left_out`.
+        """
         found = [(name, one) for name, one in self.by_name.items() if one is not None]
         self.left_out[NO_LINE] += sum(not one.units for _, one in found)
         return sorted((pair for pair in found if pair[1].units), key=lambda pair: pair[1].time)

@@ -52,7 +52,7 @@ class Row:
         return text
 
     def whole(self, column: str, least: int, most: int = MOST_UNITS) -> int:
-        """Return a whole number.
+        """Return a field that is a whole number from `least` to `most`.
 
         Raises
         ------
@@ -67,12 +67,12 @@ class Row:
         return number
 
     def moment(self, column: str, *further: str) -> datetime:
-        """Return a time in ISO 8601, or in one of the given formats of `strptime`.
+        """Return a time without zone, in ISO 8601 or one of the given formats of `strptime`.
 
         Raises
         ------
         InputError
-            If it is not a time.
+            If it is not such a time.
         """
         text = self._fields[column]
         moment = parsed(text)
@@ -98,12 +98,12 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
     Parameters
     ----------
     columns
-        Required columns; `a|b` stands for either.
+        Required columns; `a|b` is a column named a or b, whose field is found under a.
 
     Raises
     ------
     InputError
-        One line that names the file and, if it is about one, the line.
+        If the file cannot be read, or a column or a row is wrong; names the file and the line.
     """
     reader = None
     try:

@@ -48,7 +48,7 @@ class Assembly(ABC, Generic[T]):
         self._stream: OrderStream | BundleStream | None = None
 
     def intake(self, record: Callable[[T], None] | None) -> Intake[T]:
-        """Return the intake, which passes all arrivals to `record`."""
+        """Return the intake, which passes each arrival to `record`, if given."""
         processes = [*self._regular(), *self._batches()]
         return Intake(processes, record, self._stream, self._finish())
 

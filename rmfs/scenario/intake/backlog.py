@@ -31,7 +31,7 @@ class Rest:
         self.until_us = NEVER_US
 
     def ends(self, now_us: int) -> bool:
-        """Return whether the process may continue at a time."""
+        """Return whether the process may continue at a time, and update `until_us`."""
         until_us = self._blocked_us
         if not self._openings.always:
             until_us = self._openings.open_from_us(max(now_us, until_us))
@@ -76,7 +76,7 @@ class BacklogOrders:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> OrderArrival | None:
-        """Return an order if the backlog needs one that stock can serve."""
+        """Return an order; None if the backlog is full or paused, or stock cannot serve one."""
         # called in any case, since it has to observe every change of stock
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
         if not self._rest.ends(now_us) or not wanted:
@@ -123,7 +123,7 @@ class BacklogBundles:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
-        """Return a bundle if the backlog needs one and it is not too large."""
+        """Return a bundle; None if the backlog is full or paused, or the bundle too large."""
         load = state.load
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)
         if not self._rest.ends(now_us) or not wanted:

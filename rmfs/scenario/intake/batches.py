@@ -50,8 +50,8 @@ class Batches(Generic[T]):
     cycle_s, gone_s
         Length of the cycle, and its advance at time zero.
     make
-        Function that creates the k-th order or bundle of all batches at a time; None ends the
-        batch, as nothing can be created.
+        Function of k, the time and the state that creates the k-th order or bundle, counted over
+        all batches. None, if nothing can be created, ends the batch.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Batches(Generic[T]):
         self._come = 0
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next order or bundle of the batches that are due."""
+        """Return the next order or bundle of batches that are due; None if these are complete."""
         while self.next_us <= now_us:
             if self._lacks(state, self._come):
                 thing = self._make(self._ordinal, now_us, state)

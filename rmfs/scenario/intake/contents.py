@@ -43,7 +43,7 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     Parameters
     ----------
     path
-        Further numbers of the substream, which identify the orders.
+        Further numbers of the substream, for orders that are numbered separately.
 
     Raises
     ------

@@ -59,7 +59,7 @@ def export_stream(
     site: Site,
     seed: int = 0,
 ) -> ExportedStream:
-    """Write all arrivals of a scenario, from time zero to its end.
+    """Write the orders or bundles of a scenario that arrive from time zero to its end.
 
     Parameters
     ----------
@@ -74,7 +74,8 @@ def export_stream(
     ------
     InputError
         If the stream depends on events of a run (a constant backlog, rates tied to active stations,
-        batches that fill up); such a stream can only be recorded.
+        batches that fill up), which can only be recorded; if a file of the scenario is invalid; or
+        if `path` has another suffix or cannot be written.
     """
     skus = sku_set(scenario.skus)
     recorder = StreamRecorder()

@@ -21,7 +21,7 @@ class OrderArrival(NamedTuple):
     Attributes
     ----------
     time_us
-        Current time.
+        Arrival time.
     skus, units
         SKU and number of units of each line; all SKUs are different.
     due_us
@@ -85,10 +85,10 @@ class Process(Protocol[T_co]):
 
     @property
     def next_us(self) -> int:
-        """Latest time of the next call of `draw`; `NEVER_US`: only after a change of state."""
+        """Time by which `draw` must be called again; `NEVER_US`: only after a change of state."""
 
     def draw(self, now_us: int, state: State) -> T_co | None:
-        """Return the next arrival due now, or None if there is no more."""
+        """Return the next arrival that is due, or None if there is none."""
 
 
 class Intake(Generic[T]):
@@ -120,7 +120,7 @@ class Intake(Generic[T]):
 
     @property
     def next_us(self) -> int:
-        """Latest time of the next call of `due`, after everything due has been taken."""
+        """Time by which `due` must be called again, once everything due has been taken."""
         if len(self._processes) == 1:  # the usual case, and this is asked after every change
             return self._processes[0].next_us
         return min(process.next_us for process in self._processes)

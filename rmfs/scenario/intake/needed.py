@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 class NeededBundles:
     """Orders bundles of SKUs that run short (a process of an intake).
 
-    The units left of a SKU for further orders are those stored and in bundles on their way, minus
-    those ordered; below the reorder point the SKU is short. With a reorder point of 0, only what
-    waiting orders lack is replenished. The SKU with the fewest units left comes first; ties go to
-    the lowest index.
+    The units of a SKU left for further orders are those stored and those in bundles on their way,
+    minus those ordered; below the reorder point the SKU is short. With a reorder point of 0, only
+    what waiting orders lack is replenished. The SKU with the fewest units left comes first; ties
+    go to the lowest index.
 
     Parameters
     ----------
@@ -52,7 +52,11 @@ class NeededBundles:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
-        """Return a bundle if a SKU is short."""
+        """Return a bundle of the SKU with the fewest units left, if this SKU is short.
+
+        None is returned also in a down period, during the pause after a bundle that would exceed
+        the load limit, and while the maximum number of bundles waits.
+        """
         if not self._rest.ends(now_us) or state.waiting_bundles >= self._config.bundles:
             return None
         left = state.uncommitted + state.incoming

@@ -36,7 +36,7 @@ class Rate(Protocol):
         """Return the rate at a time."""
 
     def redraw(self, now_us: int) -> None:
-        """Discard everything that has been drawn for later times."""
+        """Redraw all random changes after a time."""
 
 
 def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: int) -> Rate:
@@ -49,7 +49,7 @@ def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: in
     per_h
         Mean rate; with a high-low profile, the low rate.
     scale
-        Factor on all rates of the scenario: the number of stations.
+        Factor on all rates: the number of stations if rates are per station, else 1.
     gone_s
         Time by which all cycles have advanced at time zero.
     seed
@@ -142,7 +142,7 @@ class _HighLow:
 def exponential_us(uniform: float, per_h: float) -> int:
     """Convert a number in [0, 1) to the time until the next event of a Poisson process.
 
-    In whole microseconds it is equal on all processors, whose logarithms may differ in the last
-    bits.
+    Rounding to whole microseconds hides the last bits of the logarithm, in which processors may
+    differ.
     """
     return round(-math.log1p(-uniform) / per_h * US_PER_H)

@@ -35,11 +35,11 @@ class State(Protocol):
 
     @property
     def waiting_orders(self) -> int:
-        """Orders not yet at a station."""
+        """Number of orders not yet at a station."""
 
     @property
     def waiting_bundles(self) -> int:
-        """Bundles not yet assigned to a station and a pod."""
+        """Number of bundles not yet assigned to a station and a pod."""
 
     @property
     def stored_space(self) -> float:

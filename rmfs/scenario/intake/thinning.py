@@ -42,8 +42,8 @@ class Candidate(NamedTuple):
 class Poisson:
     """The arrivals of a Poisson process with a changing rate, as an iterator that can be copied.
 
-    The ordinal is that of the candidate, so that two runs that accept different candidates still
-    agree in the contents of those that both accept.
+    Ordinals count all candidates, also those not accepted, so that two runs that accept different
+    candidates agree in the contents of those that both accept.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Poisson:
     openings
         Down periods, in which the rate is zero.
     until_us
-        End of the times of interest.
+        Time after which no arrival is generated.
     """
 
     def __init__(

@@ -48,7 +48,7 @@ class Timed(Generic[T]):
         Raises
         ------
         InputError
-            If it comes from a file.
+            If it is not drawn by a Poisson process, as when it comes from a file.
         """
         if self._next is None:
             return
@@ -62,11 +62,11 @@ class Timed(Generic[T]):
 
     @property
     def next_us(self) -> int:
-        """Time of the next candidate."""
+        """Time of the next candidate; `NEVER_US` if there is none."""
         return NEVER_US if self._next is None else self._next.time_us
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next arrival that is due."""
+        """Return the next arrival that is due; None if there is none."""
         while (candidate := self._next) is not None and candidate.time_us <= now_us:
             self._next = next(self._candidates, None)
             if self._share is None or candidate.needed_share < self._share(state):
@@ -75,7 +75,7 @@ class Timed(Generic[T]):
 
 
 def at_zero(number: int) -> Iterator[Candidate]:
-    """Yield a number of arrivals at time zero."""
+    """Yield a number of candidates at time zero."""
     return map(_at_zero, iter(range(number)))
 
 
@@ -84,7 +84,7 @@ def _at_zero(ordinal: int) -> Candidate:
 
 
 def share_of(tied_to: TiedTo) -> Callable[[State], float] | None:
-    """Return the function that reads the share of active stations, if a rate is tied to them."""
+    """Return the function that reads the share of active stations, or None for "nothing"."""
     if tied_to == "pick-stations":
         return attrgetter("active_pick_share")
     if tied_to == "replenishment-stations":

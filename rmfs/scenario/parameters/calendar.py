@@ -90,7 +90,7 @@ class _Batches(Block):
 
 
 class OrderBatches(_Batches):
-    """Orders that arrive all at once, in addition to all others."""
+    """Orders that arrive simultaneously, in addition to all others."""
 
     fill_to: Numbers = Field(
         (),
@@ -101,7 +101,7 @@ class OrderBatches(_Batches):
 
 
 class BundleBatches(_Batches):
-    """Bundles that arrive all at once, in addition to all others."""
+    """Bundles that arrive simultaneously, in addition to all others."""
 
     fill_to: Levels = Field(
         (),

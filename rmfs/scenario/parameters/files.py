@@ -14,7 +14,7 @@ def existing(*suffixes: str) -> pydantic.AfterValidator:
     Parameters
     ----------
     suffixes
-        Allowed suffixes, such as `.csv`. None: any.
+        Allowed suffixes, such as `.csv`; without arguments, any suffix is allowed.
     """
 
     def check(path: Path) -> Path:

@@ -23,13 +23,13 @@ TimesFile = Annotated[Path, pydantic.Strict(strict=False), existing(".csv")]
 
 
 class ConstantTime(Block):
-    """The time per unit of the station's layout, without variation."""
+    """The time per unit of the station in the layout, without variation."""
 
     distribution: Literal["constant"] = "constant"
 
 
 class GammaTime(Block):
-    """Gamma distributed; the mean is the time per unit of the station's layout."""
+    """Gamma distributed; the mean is the time per unit of the station in the layout."""
 
     distribution: Literal["gamma"] = "gamma"
     variation: Variation = Field(
@@ -39,7 +39,7 @@ class GammaTime(Block):
 
 
 class LognormalTime(Block):
-    """Lognormal; the mean is the time per unit of the station's layout."""
+    """Lognormal; the mean is the time per unit of the station in the layout."""
 
     distribution: Literal["lognormal"] = "lognormal"
     variation: Variation = Field(
@@ -49,7 +49,7 @@ class LognormalTime(Block):
 
 
 class MeasuredTime(Block):
-    """Drawn from measured times, all equally likely."""
+    """The time of a unit is drawn from measured times, all equally likely."""
 
     distribution: Literal["empirical"] = "empirical"
     file: TimesFile = Field(

@@ -70,7 +70,7 @@ class PoissonReplenishment(_Drawn):
 
 
 class NeededReplenishment(_Replenishment):
-    """Bundles of SKUs that run short: ordered, but neither in stock nor on their way."""
+    """Bundles of SKUs with too few units, in stock or on their way, left for further orders."""
 
     mode: Literal["needed"] = Field(
         "needed", description="bundles of SKUs that waiting orders lack"

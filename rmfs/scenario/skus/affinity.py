@@ -25,8 +25,8 @@ class Affinity:
     ----------
     first, second
         The pairs with a weight of their own, as SKU indices, shape (n,) each. A pair counts in the
-        given direction (previous line, next line); the reader adds the opposite direction where a
-        file gives only one.
+        given direction (previous line, next line) only; if an .xgenc file gives one direction, the
+        opposite one is added with the same weight.
     weight
         Weight of each pair, shape (n,).
     default_weight

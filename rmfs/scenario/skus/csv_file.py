@@ -28,9 +28,10 @@ MOST_UNITS = 1_000_000
 def read_sku_table(path: Path) -> SkuFileContent:
     """Read a SKU table: `sku` and, if present, the other `COLUMNS`.
 
-    SKUs that are whole numbers keep them as ids; others are numbered from 0 and keep their text as
-    names. Without `popularity`, all are equally popular. A file of orders (with columns `order` and
-    `quantity`) is also accepted: its SKUs are as popular as their number of order lines.
+    If all SKUs are whole numbers, these are their ids; otherwise all SKUs are numbered from 0 and
+    keep their texts as names. Without `popularity`, all are equally popular. A file of orders (with
+    columns `order` and `quantity`) is also accepted: its SKUs are as popular as their number of
+    order lines.
 
     Raises
     ------

@@ -50,7 +50,7 @@ def draw_popularity(skus: SkuSet, ax: Axes, *, cumulative: bool = False) -> None
 
 
 def save_picture(skus: SkuSet, path: Path) -> None:
-    """Write both curves side by side.
+    """Draw the shares of demand and the cumulative shares side by side, in a file.
 
     Raises
     ------

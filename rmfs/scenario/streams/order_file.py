@@ -37,7 +37,7 @@ class OrderFile:
 
 
 class OrderFileBuilder:
-    """Builds an `OrderFile`; a repeated text takes 4 bytes.
+    """Builds an `OrderFile`; each repetition of a text takes 4 bytes.
 
     Parameters
     ----------

@@ -26,6 +26,8 @@ LARGEST_HEADER = 1 << 24
 def read_parquet(path: Path, rows: Rows, problems: Problems) -> None:
     """Pass the rows of a Parquet file to a receiver, as text; row 1 is the first.
 
+    Errors in the contents are added to `problems`.
+
     Raises
     ------
     OSError
@@ -60,6 +62,6 @@ def _text(field: Any) -> str:
 
 
 def write_parquet(columns: dict[str, NDArray[Any]], path: Path) -> None:
-    """Write columns; nan becomes an empty field."""
+    """Write columns to a Parquet file; nan becomes an empty field."""
     table = pa.table({name: pa.array(values, from_pandas=True) for name, values in columns.items()})
     parquet.write_table(table, path)

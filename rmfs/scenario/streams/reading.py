@@ -37,12 +37,13 @@ def read_orders(
         Date and time of time zero. Default: midnight before the first order, if times are in ISO
         8601.
     classes
-        Names of the classes of orders, for a column priority; it may be empty or missing.
+        Names of the classes of orders, of which a column priority names one for each order. The
+        column may be missing, or empty for some orders.
 
     Raises
     ------
     InputError
-        One line that lists the invalid lines, each with its column and the reason.
+        If the file cannot be read, or rows are invalid; names the first of them with the reasons.
     """
     problems = Problems(path)
     rows = OrderRows(skus, problems, _word(path), zero, classes)
@@ -69,7 +70,7 @@ def read_bundles(
     Raises
     ------
     InputError
-        One line that lists the invalid lines, each with its column and the reason.
+        If the file cannot be read, or rows are invalid; names the first of them with the reasons.
     """
     problems = Problems(path)
     rows = BundleRows(skus, problems, _word(path), largest, zero)
@@ -78,7 +79,7 @@ def read_bundles(
 
 
 def first_moment(path: Path) -> datetime | None:
-    """Return the time of the first row of a file if it is valid ISO 8601."""
+    """Return the time of the first row if it is valid ISO 8601; None otherwise."""
     try:
         _read(path, _FirstMoment(), Problems(path))
     except _FoundError as found:

@@ -137,7 +137,7 @@ class OrderRows(_StreamRows):
     skus
         The valid SKUs.
     problems
-        Collects problems.
+        Collects the errors of rows.
     word
         Word for a row in messages: line or row.
     zero
@@ -235,7 +235,7 @@ class BundleRows(_StreamRows):
     skus
         The valid SKUs.
     problems
-        Collects problems.
+        Collects the errors of rows.
     word
         Word for a row in messages: line or row.
     largest

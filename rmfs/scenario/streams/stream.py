@@ -62,7 +62,7 @@ class OrderStream(_Frozen):
         return len(self.time_us)
 
     def lines(self, order: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Return the SKUs of an order and the units of each."""
+        """Return the SKU of each line of an order, and the units of each line."""
         here = slice(int(self.first_line[order]), int(self.first_line[order + 1]))
         return tuple(self.sku[here].tolist()), tuple(self.units[here].tolist())
 

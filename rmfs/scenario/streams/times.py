@@ -16,7 +16,7 @@ _US = timedelta(microseconds=1)
 
 
 class FieldError(ValueError):
-    """An invalid field; the error has its column, the reason, and what would be valid."""
+    """An invalid field; the message names its column, the reason, and what would be valid."""
 
 
 class Times:
@@ -25,8 +25,8 @@ class Times:
     Parameters
     ----------
     zero
-        Date and time of time zero. Default: midnight before the first time that is read. Without a
-        time zone, that of the first time is assumed.
+        Date and time of time zero. Default: midnight before the first time that is read. If
+        `zero` has no time zone, that of the first time with a zone is assumed.
     """
 
     def __init__(self, zero: datetime | None = None) -> None:
@@ -100,7 +100,7 @@ def number(column: str, text: str) -> float:
     Raises
     ------
     FieldError
-        If the field does not contain one.
+        If the field does not contain a finite number.
     """
     found = float(text) if is_number(text) else math.nan
     if math.isfinite(found):

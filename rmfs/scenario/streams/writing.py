@@ -45,7 +45,7 @@ def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
     Raises
     ------
     InputError
-        If the suffix is another one, or the file cannot be written.
+        If `path` has another suffix, or the file cannot be written.
     """
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".parquet"):
@@ -63,6 +63,8 @@ def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
 
 def write_streams(recorded: StreamRecorder, skus: SkuSet, folder: Path) -> dict[str, str]:
     """Write the arrivals of a run to `orders.csv` and `bundles.csv`; return their digests.
+
+    The digests are under the keys `orders` and `bundles`.
 
     Raises
     ------

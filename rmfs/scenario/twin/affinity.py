@@ -41,7 +41,9 @@ TRIES = 16
 
 
 def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> float:
-    """Return the ratio of recurring pairs to the number expected for independent SKUs.
+    """Return how many times as often pairs recur as they would if SKUs were independent.
+
+    The result is nan if there are fewer than `LEAST_PAIRS` pairs, or no pair recurs.
 
     Parameters
     ----------
@@ -68,7 +70,7 @@ def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> floa
 def neighbours(
     sku: NDArray[np.int64], first_line: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return the SKUs of consecutive lines of the same order, and the index of the order."""
+    """Return both SKUs and the order of all pairs of consecutive lines, shape (m,) each."""
     order = np.repeat(np.arange(len(first_line) - 1), np.diff(first_line))
     here = np.flatnonzero(order[1:] == order[:-1])
     return sku[here], sku[here + 1], order[here]
@@ -77,7 +79,7 @@ def neighbours(
 def fit_affinity(
     sku: NDArray[np.int64], first_line: NDArray[np.int64], skus: Drawn, seed: int
 ) -> Estimate | None:
-    """Fit the share of further lines drawn by affinity; None if there are too few pairs.
+    """Fit the share of further lines drawn by affinity; None if too few pairs recur.
 
     Parameters
     ----------
@@ -124,7 +126,7 @@ def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Draw
     Parameters
     ----------
     weights
-        Popularity of each SKU; None: drawn.
+        Popularity of each SKU, shape (K,); None: popularity is drawn.
     """
 
     def draw(share: float, seed: int) -> SkuSet:
@@ -137,14 +139,14 @@ def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Draw
 
 
 def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
-    """Return SKUs with affinity, in which each is paired with two others on average."""
+    """Return `skus` with a share of affinity, each SKU paired with two others on average."""
     pairs = min(skus.count, skus.count * (skus.count - 1) // 2)
     given = GeneratedAffinity(share=round(share, 6), pairs=pairs, default_weight=0.0)
     return skus.model_copy(update={"affinity": given})
 
 
 def simulated_lift(lines: NDArray[np.int64], skus: SkuSet, rng: np.random.Generator) -> float:
-    """Return the lift of simulated orders with given numbers of lines.
+    """Return the lift of simulated orders with given numbers of lines; nan as for `lift`.
 
     Parameters
     ----------

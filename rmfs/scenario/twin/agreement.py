@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MOST_WORK = 1e9
 MOST_ORDERS = 50_000
-"""Maximum number of simulated orders of the twin, which limits the computing time."""
+"""Limit of the simulated orders of the twin; at least one cycle is simulated in any case."""
 
 
 def agreements(
@@ -39,13 +39,13 @@ def agreements(
     skus
         SKUs of the scenario.
     days
-        Number of days over which the orders arrive.
+        Number of days over which the orders of `stream` arrive.
     cycle_h
         Length of the cycle of rates, in h.
     seed
         Seed of the run whose orders are compared.
     p_popularity, p_arrivals
-        p values of the goodness-of-fit tests.
+        p values of the goodness-of-fit tests, which are copied to the figures they belong to.
     """
     rate_per_day = len(stream) / days
     # a line that follows affinity costs time in proportion to the SKUs

@@ -23,10 +23,10 @@ class Arrivals(NamedTuple):
     mean
         Mean number of orders per hour.
     hours
-        Rate of each hour of the cycle.
+        Rate in each hour of the cycle, orders per h.
     dispersion, p
         Ratio of variance to mean of the number of orders per hour (1 for a Poisson process), and
-        the p value of its test.
+        the two-sided p value of a chi-square test of it; nan if there are too few hours.
     """
 
     mean: Estimate

@@ -23,7 +23,7 @@ class Estimate(NamedTuple):
     name
         Name of the parameter.
     value, low, high
-        Its value and its interval (`LEVEL`).
+        Its value, and the ends of its confidence interval (`LEVEL`).
     """
 
     name: str
@@ -40,9 +40,9 @@ class Agreement(NamedTuple):
     name
         Name of the figure.
     data, twin
-        Value of the figure in each; nan for a test of the model alone.
+        Value of the figure in each; nan if it cannot be computed.
     p
-        Probability of such a deviation if the model holds; nan without a test.
+        p value of the test of fit that belongs to the figure; nan without a test.
     """
 
     name: str

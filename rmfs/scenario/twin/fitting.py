@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 DAY_H = 24
 WEEK_H = 168
 MOST_UNSEEN = 20
-"""Maximum ratio of unseen to seen SKUs, above which gamma weights are meaningless."""
+"""Maximum ratio of all SKUs, seen or not, to those seen; above it gamma weights mean nothing."""
 MOST_LISTED = 200
 """Maximum number of lines of an order, or units of a line; larger ones count as this."""
 
@@ -83,7 +83,7 @@ def fit_twin(
     Raises
     ------
     InputError
-        If the file is invalid, or contains too few orders.
+        If the file is invalid, contains too few orders, or no gamma weights fit its popularity.
     """
     skus = sku_set(SkuFile(file=path))
     stream = read_orders(path, skus)

@@ -35,7 +35,7 @@ class Popularity(NamedTuple):
     skus
         Total number of SKUs, including those never ordered.
     p
-        p value of a chi-square test of the counts.
+        p value of a chi-square test of the counts; nan if there are too few bins.
     """
 
     shape: Estimate

@@ -45,7 +45,7 @@ def write_table(twin: Twin, path: Path) -> None:
     Raises
     ------
     InputError
-        If the suffix is another one, or the file cannot be written.
+        If `path` does not end in .csv, or the file cannot be written.
     """
     if path.suffix.lower() != ".csv":
         raise InputError(f"{path}: must end in .csv")
