@@ -24,7 +24,7 @@ def answer(
     solution
         Solution returned by the model.
     values
-        Its values as plain arrays and numbers; None if there are none.
+        Values of the solution as plain arrays and numbers; None if it has none.
     scale
         Reference of the relative gap. Default: the objective.
     """

@@ -60,7 +60,7 @@ class Foresight:
 
     @property
     def pile_on(self) -> float:
-        """Units picked per visit so far."""
+        """Units picked per visit so far, including the visits counted in advance; at least 1."""
         visits = sum(station.visits for station in self._view.pick_stations)
         units = _PRIOR_VISITS * _PRIOR_PILE_ON + self._picked()
         return max(1.0, float(units / (_PRIOR_VISITS + visits)))

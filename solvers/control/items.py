@@ -55,7 +55,7 @@ def servable(view: View, split: bool, splitting: Splitting | None = None) -> lis
     Parameters
     ----------
     split
-        Whether orders are split.
+        Whether orders may be split; each of their lines is then an item.
     splitting
         Which orders may be split; the others remain whole. Default: all.
     """

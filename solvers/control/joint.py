@@ -86,7 +86,7 @@ class JointAllocation(TaskAllocation[P]):
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose by the rest rule."""
+        """Choose the resting place of a robot by the rest rule."""
         return self._rest.choose(robot)
 
     # --- for the consult ------------------------------------------------------------------------
@@ -100,9 +100,9 @@ class JointAllocation(TaskAllocation[P]):
         return -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Choose by the heuristic."""
+        """Choose the pod by the heuristic."""
         return self._heuristic.replenishment_pod(robot, station)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose by the heuristic."""
+        """Choose the next station of a carried pod by the heuristic."""
         return self._heuristic.next_station(robot, stations)

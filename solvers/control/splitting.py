@@ -1,8 +1,9 @@
 """Determines which orders may be split, within the capacity of the put wall and a given limit.
 
-An order needs slots of the wall for all its totes but one. Their number is known only when its last
-line has a station, so each line without a station counts as a separate tote. An order that is split
-within this capacity therefore never finds the wall full, and no pick station is blocked.
+A split order needs a slot of the wall for each of its totes but one, or a single slot if its totes
+share one. The number of totes is known only when the last line has a station, so each line without
+a station counts as a separate tote. An order that is split within this capacity therefore never
+finds the wall full, and no pick station is blocked.
 
 If the capacity does not suffice for all orders, orders are ranked by the number of lines that pods
 under way serve at one station, per slot needed. Orders that such pods serve completely need no
@@ -63,7 +64,7 @@ class Splitting:
 
     @property
     def is_free(self) -> bool:
-        """Whether any order may be split."""
+        """Whether every order may be split, without limit or cost."""
         return self._orders == self._slots == inf and self._pays is None
 
     def admits(self, order: Order) -> bool:
@@ -74,7 +75,10 @@ class Splitting:
         return self._is_settled(order) or (self._orders >= 1 and self._slots >= self._need(order))
 
     def offers(self) -> Callable[[Order], bool]:
-        """Choose the orders that may be split now; return a test of whether one may."""
+        """Choose the orders that may be split now; return a test whether an order is one of them.
+
+        Orders that are already split, or have a single line, always pass.
+        """
         if self._orders == self._slots == inf:
             return lambda order: self._is_settled(order) or self._is_worth_it(order)
         chosen: set[int] = set()

@@ -117,7 +117,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         self._buffer = Buffer(view, parameters.buffer_s)
 
     def next_event_s(self) -> float:
-        """Return when the optimiser may be asked again, if there is something to ask."""
+        """Return when the optimiser may be asked again if there is something to ask; else inf."""
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Told]:

@@ -28,7 +28,7 @@ class Methods(Generic[D, V]):
     Parameters
     ----------
     methods
-        The methods by name, which is that of their module.
+        The methods by name; each is named after its module.
     default
         Name of the method used by default.
     rule
@@ -75,8 +75,8 @@ class Methods(Generic[D, V]):
         seed
             Seed of random choices, if the method makes any. Default 0.
         start
-            Feasible values to start from; the result is never worse. Methods that need none ignore
-            them. Default: none.
+            Feasible values to start from. Methods that use them return nothing worse; the others
+            ignore them. Default: none.
         options
             Further options of the method.
 

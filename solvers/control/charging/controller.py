@@ -51,7 +51,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
         self._plan: tuple[Call, set[int], dict[int, int]] | None = None
 
     def next_event_s(self) -> float:
-        """Time of the next schedule."""
+        """Return when the next schedule is due; inf without batteries or before an answer."""
         if self.view.batteries is None or self.in_flight:
             return inf
         return max(self._asked_s, 0.0) + self.parameters.period_s
@@ -88,12 +88,12 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
             yield from self._carry_out(batteries)
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Return the level by the rule: the upper one, if the robot is below the lower one."""
+        """Return `until_share` for a robot below `below_share`, else 0, as the rule does."""
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 
     def target_share(self) -> float:
-        """A full battery: the schedule determines when robots leave."""
+        """Return the level of a full battery: the schedule determines when robots leave."""
         batteries = self.view.batteries
         return 1.0 if batteries is None else batteries.given.full_share
 

@@ -25,9 +25,9 @@ class _Seen(NamedTuple):
 class Forecast:
     """Counts the robots that work uses, and forecasts their number from recent counts.
 
-    Robots at rest are not used, nor are those that queue behind another waiting robot at the same
-    station. The count is scaled up in proportion from the stations with work that were busy to all
-    stations with work.
+    Robots at rest, charging, or queuing behind another waiting robot at a pick or replenishment
+    station are not counted. The count is scaled up in proportion from the stations with work that
+    were busy to all stations with work.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class Forecast:
             self._seen.popleft()
 
     def cases(self) -> NDArray[np.int64]:
-        """Return the cases, all equally likely, shape (Q,)."""
+        """Return the number of robots needed in each case, all equally likely, shape (Q,)."""
         robots = len(self._view.robots)
         busy = sum(seen.busy for seen in self._seen)
         stations = sum(seen.stations for seen in self._seen)

@@ -18,8 +18,8 @@ class Question:
     Attributes
     ----------
     method
-        `highs` or `cp_sat`, each starting from the greedy rule unless that is proven to be good
-        enough, or `greedy` alone.
+        `highs` or `cp_sat`, used only if the gap of the greedy solution exceeds the limit, and
+        starting from that solution; or `greedy` alone.
     """
 
     data: Charging
@@ -28,7 +28,7 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Find `group`, `begin` and `length` of the stay of each robot."""
+    """Schedule the stays; the answer has `group`, `begin` and `length`, as in `ChargePlan`."""
     found = charging.solve(question.data, "greedy")
     if question.method != "greedy" and found.gap > question.limits.gap:
         found = charging.solve(question.data, question.method, question.limits, start=found.values)

@@ -64,9 +64,9 @@ def groups_of(view: View, batteries: Batteries) -> list[Group]:
 
 
 def slot_s(groups: Sequence[Group], batteries: Batteries, share: float) -> float:
-    """Return the length of a slot: the time in which a place charges a share of a battery, in s.
+    """Return the time in which the most powerful place charges a share of a battery, in s.
 
-    If batteries are only swapped, it is the time per swap at one station in the long run.
+    If batteries are only swapped, return the longest time per swap of any group in the long run.
     """
     power_w = max((group.power_w for group in groups), default=0.0)
     if power_w > 0:

@@ -64,11 +64,11 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     # --- orders ---------------------------------------------------------------------------------
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Record that a pod has arrived, whose remaining units should be used."""
+        """Record that a pod has arrived: further orders may use its stock."""
         self._arrived = True
 
     def next_event_s(self) -> float:
-        """Return when the optimiser may be asked again, if there is something to ask."""
+        """Return when the optimiser may be asked again if there is something to ask; else inf."""
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Decision]:
@@ -121,7 +121,10 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     # --- pods -----------------------------------------------------------------------------------
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
-        """Choose the nearest of the called pods, or by the heuristic if there is none."""
+        """Return the nearest pod called for a station that can serve its open requests.
+
+        If no pod is called and open requests lack units, the heuristic chooses; otherwise -1.
+        """
         called = self._plan.pods[station.index]
         pods = [pod for pod in called if self._plan.useful(pod, station)]
         if pods:
@@ -132,9 +135,9 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         return self._heuristic.pick_pod(robot, station) if missing.any() and not called else -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Choose by the heuristic."""
+        """Choose the pod by the heuristic."""
         return self._heuristic.replenishment_pod(robot, station)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose by the heuristic."""
+        """Choose the next station of a carried pod by the heuristic."""
         return self._heuristic.next_station(robot, stations)

@@ -96,7 +96,8 @@ class Plan:
         Parameters
         ----------
         solution
-            `pod_station`, `pod_robot`, and `station` and `prospect` of each item; -1 for none.
+            `pod_station` and `pod_robot` of each pod, `station` and `prospect` of each item; -1 for
+            none.
         items
             Items behind the indices of the solution.
         call
@@ -124,8 +125,8 @@ class Plan:
         """Yield items that can be assigned to a station now, one at a time.
 
         Items that the pod at the head can serve come first and may use the reserved slots. Invalid
-        items are dropped and counted as stale: those that have left the backlog, and those whose
-        stock has gone.
+        items are dropped and counted as stale: those that have left the backlog and, unless
+        `later`, those whose stock has gone.
         """
         self._forget_pods(station)
         waiting = self.items[station.index]
@@ -198,7 +199,7 @@ class Plan:
         )
 
     def useful(self, pod: int, station: PickStation) -> bool:
-        """Whether a called pod can serve an open request of its station."""
+        """Whether a pod is at hand and can serve an open request of a station."""
         inventory, at_hand = self._view.inventory, self._view.storage.is_at_hand.item
         return bool(at_hand(pod)) and inventory.serves(pod, list(station.requests.lines))
 

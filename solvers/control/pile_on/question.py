@@ -30,7 +30,7 @@ class Question:
     method
         `joint`, `cp_sat`, `greedy` or `hadgs`.
     limits, pruning
-        Limits and candidates of CP-SAT.
+        Limits of CP-SAT, and how many candidates it is given.
     bound_steps
         Steps of the search for a bound.
     """
@@ -81,7 +81,7 @@ def solve(question: Question) -> Answer:
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:
-    """Decide by pod match alone, if the optimiser has failed; as `Answer.solution`."""
+    """Decide by pod match alone, after a failure; return values as in `Answer.solution`."""
     found = solve(replace(question, method="greedy", bound_steps=0)).solution
     assert found is not None
     return found

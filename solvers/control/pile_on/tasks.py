@@ -127,7 +127,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         self._changed |= asks and (trigger is not Trigger.NEW_ORDER or bool(self.view.resting))
 
     def next_event_s(self) -> float:
-        """Return when the optimiser may be asked again, if there is something to ask."""
+        """Return when the optimiser may be asked again if there is something to ask; else inf."""
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Decision]:

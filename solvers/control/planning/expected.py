@@ -68,7 +68,9 @@ class ExpectedOrders:
         self._come += 1
 
     def draw(self, horizon_s: float, scenarios: int) -> list[list[ExpectedOrder]]:
-        """Draw future orders for some scenarios, without those that stock cannot serve.
+        """Return the future orders of each scenario; none until an order has arrived.
+
+        Orders with a line that no single pod can serve are left out.
 
         Parameters
         ----------

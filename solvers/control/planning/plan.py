@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """A waiting order, or a line of one, planned for a station.
+    """A waiting order, or a line of a waiting order, planned for a station.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class Plan:
         return {one.item.key for station in stations for one in self._orders[station]}
 
     def splitting(self, stations: Iterable[int]) -> Splitting:
-        """Return which orders may be split, including those with lines planned for stations."""
+        """Return the capacity to split orders, less that of lines planned for these stations."""
         planned = [one.item for station in stations for one in self._orders[station]]
         orders = [item.order for item in planned if item.line is not None]
         return Splitting(self._view, self._split_orders, orders)
@@ -126,10 +126,10 @@ class Plan:
         return pods[0] if pods else -1
 
     def due(self, station: PickStation) -> Iterator[AssignOrder | AssignLines]:
-        """Yield items for slots now; the caller assigns each before requesting the next.
+        """Yield assignments due now; the caller carries out each before requesting the next.
 
-        These are orders whose first pod is under way. One slot is reserved for orders that the pod
-        at the head serves alone.
+        Due are items whose first pod is under way. One slot is reserved for items that the pod at
+        the head serves alone.
         """
         waiting = self._orders[station.index]
         if not waiting or not station.active:
@@ -149,7 +149,7 @@ class Plan:
                 yield planned.item.decision(station.index)
 
     def streams(self, pod: int, station: int) -> bool:
-        """Whether there are waiting orders that a single pod serves."""
+        """Whether a waiting item is planned for a station that this pod serves alone."""
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:

@@ -73,7 +73,7 @@ def solve(question: Question) -> Answer:
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:
-    """Plan by the start rule, if the optimiser has failed; as `Answer.solution`."""
+    """Plan by the start rule, after a failure; return values as in `Answer.solution`."""
     found = solve(replace(question, method="greedy", bound_steps=0)).solution
     assert found is not None
     return found

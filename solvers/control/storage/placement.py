@@ -39,14 +39,14 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Find the place of each pod: `place`, its waypoint, shape (P,)."""
+    """Choose the place of each pod; the answer has its waypoint, `place`, shape (P,)."""
     found = placement.solve(question.data, question.method)
     values = None if found.values is None else {"place": question.waypoint[found.values]}
     return answer(found, values)
 
 
 def worth_looking_at(cost_s: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return places that an optimal placement can use: the P cheapest for each of P pods.
+    """Return indices of places that an optimal placement can use: the P cheapest of each pod.
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Compute prices of zones (`place_per_h`, `delay_s`) and values of classes."""
+    """Compute dual prices; the answer has the attributes of `Prices`."""
     found = zones.solve(question.data, question.method)
     if found.values is None:
         return answer(found, None)

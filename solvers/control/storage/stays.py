@@ -47,7 +47,7 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Find the zone of each returning pod: `zone`, shape (returning,)."""
+    """Choose the zone of each returning pod; the answer has `zone`, shape (returning,)."""
     found = stays.solve(question.data, "greedy")
     if question.method != "greedy":
         found = stays.solve(question.data, question.method, question.limits, start=found.values)

@@ -53,7 +53,7 @@ class Asking(TaskAllocation[P]):
     It is asked as soon as a robot needs a task, and for robots at rest when there is new work, at
     most once per `buffer_s`. If the optimiser has failed or has not answered yet, a rule decides: a
     pod continues at a station that it can serve, or is parked; an empty robot works for the station
-    with work that has the fewest pods under way, ties by distance.
+    with work that has the fewest pods under way, ties by travel time.
     """
 
     goes_on = True
@@ -73,7 +73,7 @@ class Asking(TaskAllocation[P]):
         """Yield the valid decisions of a solution, using `call.left` to go through its parts."""
 
     def next_event_s(self) -> float:
-        """Return when the optimiser may be asked again, if there is something to ask."""
+        """Return when the optimiser may be asked again if there is something to ask; else inf."""
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Told]:
@@ -102,7 +102,7 @@ class Asking(TaskAllocation[P]):
             yield from own(self.decide(consult))
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose by the rest rule."""
+        """Choose the resting place of a robot by the rest rule."""
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:

@@ -48,7 +48,7 @@ class Job:
     service_s
         Service time at the station, in s.
     due_s
-        Time from now until the station runs out of work, in s.
+        Time from now until the station has done the work of its pods and earlier jobs, in s.
     worth_s
         Value of the pod's work, in s of robot time.
     """
@@ -64,9 +64,9 @@ class Job:
 def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) -> list[Job]:
     """Choose pods for every station, one after another.
 
-    The next pod of a pick station is the one with the highest value per trip time, counting
-    completed orders and units of requests that earlier pods leave open; ties: the lowest number.
-    The next pod of a replenishment station is the one with the most bundles per trip time. Each pod
+    The next pod of a station is the one whose value exceeds its trip time by most, or falls short
+    of it by least; ties go to the lowest number. At pick stations the value counts completed orders
+    and units of requests that earlier pods leave open, at replenishment stations bundles. Each pod
     is chosen only once.
 
     Parameters

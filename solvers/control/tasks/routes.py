@@ -57,10 +57,11 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Find the first step of each robot: `place` for its pod, then `task`; -1 for none, shape (R,).
+    """Plan routes; the answer has their first steps.
 
-    By neighbourhood search, or insertion first, then from its solution CP-SAT over the shortest
-    arcs, or column generation.
+    These are the `place` where each robot stores its pod and its first `task`, shape (R,), -1 for
+    none. Neighbourhood search works alone; CP-SAT over the shortest arcs, and column generation,
+    start from the solution of insertion.
     """
     data = question.data
     found = sequence.solve(data, "lns" if question.method == "lns" else "greedy", question.limits)
@@ -158,7 +159,7 @@ class RoutesControl(Asking[RoutesParameters]):
         return self._nearest.place(robot)
 
     def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:
-        """Return the best next pod of a station."""
+        """Return the best next pod of a station, or -1."""
         return next((job.pod for job in self._jobs() if job.station == station), NONE)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:

@@ -65,7 +65,7 @@ def solve(
     Raises
     ------
     ModelError
-        If a number that must be whole is not.
+        If the program is not of this kind, or a number is too large for the solver.
     WallGuardError
         If the wall-clock guard ran out.
     """

@@ -78,7 +78,7 @@ class Charging:
     least
         Level below which no robot should fall. Default 0.15.
     short_s
-        Penalty for falling below it, in s per unit of the level. Default 36000.
+        Penalty for falling below `least`, in s per unit of the level. Default 36000.
     idle
         Cost of time away from work when the robot is not needed, as a share of its cost when the
         robot is needed, from 0 to 1. Default 0.

@@ -226,12 +226,12 @@ def coverable_lines(data: PileOn, candidates: Candidates) -> Flags:
 
 
 def every(lines: Flags, data: PileOn) -> Flags:
-    """Reduce flags of lines, shape (L, ...), to orders: whether all lines have it, shape (O, ...).
+    """Return whether a flag is set for all lines of each order, shape (O, ...).
 
     Parameters
     ----------
     lines
-        Flags with lines as first axis.
+        Flag of each line, shape (L, ...).
     data
         The input.
     """

@@ -35,7 +35,7 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Decide by greatest gain; `iterations` limits the number of pod calls.
+    """Decide by greatest gain; `iterations` limits the calls for slots, and those for prospects.
 
     Parameters
     ----------

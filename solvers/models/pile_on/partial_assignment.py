@@ -18,8 +18,8 @@ from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
 from rmfs.solvers.models.pile_on.values import Assignment
 
 TABLE_ENTRY = 1 / 32
-"""Number of table entries (pod and line) that take as long to process as one nonzero of a
-programme; it converts table entries to `Solution.built`."""
+"""Time to process a table entry (pod and line), relative to a nonzero of a programme; it converts
+table entries to `Solution.built`."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ class Variant(Enum):
     """How the lines of an order may be covered (Xie, Thieme, Krenzler, Li 2021)."""
 
     WHOLE = "whole"
-    """An order gets a slot only if the pods assigned to that station cover all its lines."""
+    """An order gets a slot only if the pods assigned to its station cover all its lines."""
 
     LATER = "later"
     """An order may take a slot with lines still open; pods called later cover them."""

@@ -156,7 +156,7 @@ class Planning:
 
     @cached_property
     def under_way(self) -> list[list[int]]:
-        """Number of pods under way to each station."""
+        """Pods under way to each station, in order of arrival."""
         found: list[list[int]] = [[] for _ in range(self.stations)]
         for pod, station in zip(self.coming.tolist(), self.coming_to.tolist(), strict=True):
             found[station].append(pod)
