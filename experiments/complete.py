@@ -1,4 +1,4 @@
-"""Missing runs of an experiment."""
+"""Finds the missing runs of an experiment."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ def optional(module: str, extra: str, purpose: str) -> Any:
     extra
         The extra of rmfs that contains it.
     purpose
-        What it is needed for.
+        What the module is needed for.
 
     Raises
     ------

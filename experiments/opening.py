@@ -55,7 +55,7 @@ class Opened:
 
 
 def opened(design: str, out: Path | None = None) -> Opened:
-    """Open an experiment; if its design has problems, print them and exit with code 2.
+    """Open an experiment; if its design has errors, print them and exit with code 2.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def opened(design: str, out: Path | None = None) -> Opened:
 
 
 def refuse(made: Plan) -> None:
-    """Print all problems of a plan, one line each, and exit with code 2."""
+    """Print all errors of a plan, one line each, and exit with code 2."""
     if made.problems:
         for problem in made.problems:
             typer.echo(f"rmfs: {made.source}: {' '.join(problem.split())}", err=True)

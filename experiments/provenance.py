@@ -42,9 +42,9 @@ def write(
     design, design_hash
         Name and hash of the design.
     columns
-        Columns that it shows.
+        Columns that the table or plot shows.
     more
-        Anything else that determines it, such as the confidence.
+        Anything else that determines the table or plot, such as the confidence.
 
     Returns
     -------

@@ -77,7 +77,7 @@ def failed(plan: Plan, store: Store) -> pd.DataFrame:
 
 
 def failed_pairs(plan: Plan, store: Store) -> set[tuple[str, int]]:
-    """Return the same as pairs of arm and replication."""
+    """Return the failed runs that `failed` returns, as pairs of arm and replication."""
     lost = failed(plan, store)
     return set(zip(lost["arm"], lost["replication"].astype(int), strict=True))
 

@@ -56,7 +56,7 @@ CASES = [
 
 
 def reference_loop() -> float:
-    """Time a fixed piece of plain Python, a linear congruential generator, in s."""
+    """Return the time of a fixed loop of plain Python, a linear congruential generator, in s."""
     begun = time.perf_counter()
     state = 1
     for _ in range(REFERENCE_STEPS):

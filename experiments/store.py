@@ -191,7 +191,7 @@ class Store:
         Raises
         ------
         InputError
-            If it was not kept, or a file of it is corrupted.
+            If the table was not kept, or one of its files is corrupted.
         """
         if not (self.folder / name).is_dir():
             raise InputError(f'{self.folder}: table {name} was not kept; set keep = ["{name}"]')

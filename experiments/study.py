@@ -64,7 +64,7 @@ class Study:
         columns
             Columns of the footprint. Default `units_per_h`.
         by
-            A factor whose levels get one row each: the mean over all other factors, seed by seed.
+            A factor whose levels get one row each, averaged over all other factors seed by seed.
             Default: one row per arm.
 
         Raises

@@ -57,7 +57,7 @@ class Goal:
     tolerance
         Maximum difference of the mean from the target.
     low, high
-        Levels that enclose the one sought.
+        Levels between which the level sought lies.
     confidence
         Probability with which the mean is within the tolerance. Default 0.95.
     search_seeds
@@ -135,9 +135,9 @@ class Calibration:
         Level at which the mean is within the tolerance of the target, with the required confidence;
         nan if the runs did not suffice.
     mean, half_width
-        Mean and half width in the test that it passed.
+        Mean, and half width of its interval, in the test that this level passed.
     slope
-        Estimated change of the mean per unit of the level there.
+        Estimated change of the mean per unit of the level, at this level.
     steps
         All levels evaluated.
     runs
@@ -301,7 +301,7 @@ def calibrate(goal: Goal, respond: Respond, watch: Callable[[Step], None] = prin
         Function of a level and seeds that returns the response of each seed, shape (N,). Its mean
         must be monotone in the level.
     watch
-        Function called with every step.
+        Function called with every step as soon as it has been evaluated.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Designs: which runs an experiment consists of.
 
 `file` defines the contents of a design file, `arms` turns it into arms, `resolve` loads the inputs
-of an arm and computes their digest, `planning` combines everything and reports problems, and
+of an arm and computes their digest, `planning` combines everything and reports errors, and
 `stages` determines which runs are needed next.
 """
 

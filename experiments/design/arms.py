@@ -79,9 +79,9 @@ class Level:
     shown
         The values shown in the columns of a result table.
     settings
-        Parameters that it sets, by dotted path.
+        Parameters that the level sets, by dotted path.
     name
-        Its part of the arm's name.
+        The part of the arm's name that stands for the level.
     raw
         For each column, the values by which exclusions may refer to it.
     of_grid
@@ -148,7 +148,7 @@ def factor_names(keys: Iterable[str]) -> dict[str, str]:
 
 
 def shown_value(value: Any) -> Any:
-    """Return the value of a level that tables show."""
+    """Return the value that tables show for a level."""
     if isinstance(value, bool | int | float | str) or value is None:
         return value
     if isinstance(value, dict) and isinstance(value.get("name"), str):
@@ -158,7 +158,7 @@ def shown_value(value: Any) -> Any:
 
 
 def is_parameter(key: str) -> bool:
-    """Whether a factor's key is a parameter rather than a name of its own."""
+    """Whether a factor's key is a parameter rather than a user-defined name."""
     return key.split(".")[0] in (*PARTS, "pacing")
 
 

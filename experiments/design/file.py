@@ -49,7 +49,7 @@ Measure = Annotated[str, pydantic.AfterValidator(_measure)]
 
 
 class Strict(Model):
-    """Numbers must be written as numbers."""
+    """Base of the tables of a design file: numbers must be written as numbers."""
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
 
@@ -273,7 +273,7 @@ def read(path: Path) -> tuple[DesignFile, Table]:
     Raises
     ------
     InputError
-        One line that lists every problem with its key.
+        If the file is invalid; one line lists every error with its key.
     """
     table = config.read_toml(path)
     own_measures(table, path.parent)

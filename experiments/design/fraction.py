@@ -110,7 +110,7 @@ def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]
 
 
 def efficiency(rows: NDArray[np.float64], chosen: Sequence[int]) -> float:
-    """Return the D-efficiency of a choice: 1 if each arm is as informative as in the full grid."""
+    """Return the D-efficiency of the choice: information per arm, relative to the full grid."""
     part, whole = rows[list(chosen)], rows
     parameters = rows.shape[1]
     share = np.linalg.slogdet(part.T @ part)[1] - np.linalg.slogdet(whole.T @ whole)[1]
@@ -118,14 +118,14 @@ def efficiency(rows: NDArray[np.float64], chosen: Sequence[int]) -> float:
 
 
 def fraction(made: Sequence[Arm], count: int, seed: int = 0) -> tuple[list[Arm], float]:
-    """Choose arms; return them with the efficiency of the choice."""
+    """Choose arms; return the arms, and the D-efficiency of the choice."""
     rows = main_effects([list(arm.levels.values()) for arm in made])
     chosen = d_optimal(rows, count, seed)
     return [made[number] for number in chosen], efficiency(rows, chosen)
 
 
 def to_csv(made: Sequence[Arm]) -> str:
-    """Return arms as an `only_file`."""
+    """Return arms as the CSV text of an `only_file`: a row per arm, a column per factor."""
     short = factor_names(made[0].levels)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -1,4 +1,4 @@
-"""A design with everything resolved: arms with digests, input files with hashes, problems."""
+"""A design with everything resolved: arms with digests, input files with hashes, errors."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ FILE = "plan.json"
 
 
 class PlanError(InputError):
-    """A plan has problems and cannot be run.
+    """A plan has errors and cannot be run.
 
     Parameters
     ----------
     problems
-        Every problem found, each naming arm and key.
+        Every error found, each naming arm and key.
     """
 
     def __init__(self, source: str, problems: list[str]) -> None:
@@ -58,7 +58,7 @@ class Plan:
     files
         Hash of every input file.
     problems
-        Problems; a plan with problems cannot be run.
+        Errors of the arms; a plan with errors cannot be run.
     measures
         The user's measures, as described by `rmfs.measure.registry.described`.
     source
@@ -106,7 +106,7 @@ class Plan:
         raise InputError(f"{name}: no such arm; arms: {shown}{more}")
 
     def seed(self, arm: Arm, replication: int) -> int:
-        """Return the seed of a run; with common random numbers, that of the design itself."""
+        """Return the seed of a run: `replication` with common random numbers, else its own."""
         if self.design.common_random_numbers:
             return replication
         entropy = [replication, int(arm.digest[:16], 16)]
@@ -135,12 +135,12 @@ class Plan:
         )
 
     def require_sound(self) -> None:
-        """Raise an error if the plan has problems.
+        """Raise an error if the plan cannot be run.
 
         Raises
         ------
         PlanError
-            If there are problems; the error lists all of them.
+            If `problems` is not empty; the error lists all of them.
         """
         if self.problems:
             raise PlanError(self.source, self.problems)
@@ -185,7 +185,7 @@ def plan(
     Raises
     ------
     InputError
-        If the file itself is invalid. Problems of arms are listed in `problems`.
+        If the file itself is invalid. Errors of arms are listed in `problems`.
     """
     path = design_file.locate(name_or_path)
     _, table = design_file.read(path)

@@ -62,7 +62,7 @@ class Resolver:
     _made_of: dict[type, list[Path]] = field(default_factory=dict)
 
     def digest(self, arm: Arm, *, check: bool, seeded: list[str]) -> tuple[str, list[str]]:
-        """Return the digest of an arm, and its problems.
+        """Return the digest of an arm, and the errors in its inputs.
 
         Parameters
         ----------

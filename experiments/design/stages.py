@@ -30,7 +30,7 @@ class Wanted:
     arm
         Name of the arm.
     replication
-        The seed as numbered in the design.
+        Number of the seed in the design.
     """
 
     stage: str
@@ -79,7 +79,7 @@ def schedule(
     results
         Finished runs: columns `arm`, `replication` and those of `columns`.
     failed
-        Failed runs, as arm and replication, which will not be waited for.
+        Failed runs, as pairs of arm and replication; no results are expected from them.
     """
     known = _Known(results, frozenset(failed))
     runs: dict[tuple[str, int], Wanted] = {}

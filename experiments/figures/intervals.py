@@ -30,7 +30,8 @@ def intervals(
 ) -> None:
     """Draw one row per arm: a dot for each seed, the mean and its confidence interval.
 
-    A seed has the same height within the row of every arm, so that pairs can be recognised.
+    The dot of a seed has the same height within the row of every arm, so that pairs can be
+    recognised.
 
     Parameters
     ----------

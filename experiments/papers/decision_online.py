@@ -128,7 +128,7 @@ def compared(rows: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     rows
-        As from `answered`.
+        Rows as `answered` yields them.
     """
     groups = rows.groupby(["family", "setting", "size"], sort=False)
     return pd.DataFrame(

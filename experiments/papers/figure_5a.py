@@ -1,7 +1,7 @@
 """Figure 5a: a PSA rule exchanged in the middle of a day (Merschformann, Xie, Li 2018).
 
 The paper shows one run of 24 h in which random storage is replaced by nearest storage: the robots
-drive less, and more orders are picked at once. Here ten seeds are run on a layout of the same size
+drive less, and more orders are picked immediately. Here ten seeds are run on a layout of the size
 as RAWSim-O's MaTiMilli, together with arms that keep either rule. The effect of the exchange is the
 difference in differences, paired by seed: second half minus first half, with the exchange minus
 without it.

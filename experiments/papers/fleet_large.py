@@ -39,9 +39,9 @@ RULES = "default rules"
 
 
 def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
-    """Return a bound on units per hour for runs that store what they pick, by fleet size.
+    """Return bounds for runs that store what they pick, by fleet size, and the stations' capacity.
 
-    The capacity of the stations is returned as well.
+    All are in units per hour.
     """
     arm = design.arms[0]
     own = {

@@ -35,7 +35,7 @@ def run(
     Raises
     ------
     PlanError
-        If the plan has problems.
+        If the plan has errors.
     InputError
         If the folder cannot be written, or there is no cluster.
     """

@@ -27,7 +27,7 @@ ATTEMPTS = 3
 """Number of attempts at a run whose worker dies without an error."""
 
 PATIENCE_S = 1.0
-"""Longest wait for the engine before progress is reported, in s."""
+"""Maximum time to wait for the engine before progress is reported, in s."""
 
 MERGE_EVERY = 1024
 """Number of runs after which the files of single runs are merged."""
@@ -40,7 +40,7 @@ class Watcher(Protocol):
         """The total number of runs, and how many of them are finished."""
 
     def ended(self, job: Job, outcome: Outcome) -> None:
-        """A run has ended; well if `outcome.error` is empty."""
+        """A run has ended, without an error if `outcome.error` is empty."""
 
     def remark(self, text: str) -> None:
         """Something happened that is worth a line of output."""
@@ -93,7 +93,7 @@ def drive(plan: Plan, store: Store, engine: Engine, watcher: Watcher | None = No
     Raises
     ------
     PlanError
-        If the plan has problems.
+        If the plan has errors.
     InputError
         If the folder cannot be written, or another driver is working on it.
     """

@@ -36,11 +36,12 @@ class Selection:
     observations
         Number of observations of the remaining arms.
     over
-        Whether it has ended; otherwise it needs one more observation of each remaining arm.
+        Whether the procedure has ended; otherwise it needs one more observation of each remaining
+        arm.
     best
-        The selected arm, once it has ended.
+        The selected arm, once the procedure has ended.
     proven
-        Whether the stated error holds, which is not the case if the procedure was stopped early.
+        Whether the stated error holds; false if the procedure was stopped early.
     """
 
     left: tuple[str, ...]

@@ -40,8 +40,9 @@ WARMUP_S = 300.0
 """Simulated warm-up in s, until the initial rush is over and frequently used tables are built."""
 
 ENOUGH_ROBOTS = 1000
+"""Number of robots of the benchmark."""
 FASTER = 60.0
-"""The benchmark: a number of robots, and how much faster than reality they are simulated."""
+"""The benchmark: simulated seconds per processor second with this number of robots."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +108,7 @@ def table(
     planner
         The planner, as for `rmfs.experiments.traffic.duel.settings`.
     tell
-        Function called with each row when it is available.
+        Function called with each row as soon as it is measured.
     """
     rows = []
     for size in SIZES:
@@ -195,7 +196,7 @@ def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
 
 
 def exponent(frame: pd.DataFrame, column: str = "trips/h") -> float:
-    """Return b of `CPU = a column^b`, by least squares on logarithms: 1 is linear growth."""
+    """Return b of processor time = a column^b, by least squares on logarithms: 1 is linear."""
     work, cpu = np.log(frame[column].to_numpy()), np.log(frame["CPU s per h"].to_numpy())
     return float(np.polyfit(work, cpu, 1)[0])
 

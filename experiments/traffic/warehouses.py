@@ -111,7 +111,7 @@ def table(
     check
         Whether the motion is recorded and checked; times and memory then include that.
     tell
-        Function called with each row when it is available.
+        Function called with each row as soon as it is measured.
     """
     rows = []
     for site in SITES:
@@ -183,7 +183,7 @@ def _deciding_s(simulation: Simulation) -> float:
 
 
 def growth(frame: pd.DataFrame) -> dict[str, float]:
-    """Return the ratio of work per robot-hour in the largest fleet to that in the smallest."""
+    """Return, by rules, the work per robot-hour of the largest fleet divided by the smallest's."""
     grown = {}
     for rules, rows in frame.groupby("rules", sort=False):
         work = rows["CPU s per robot-hour"]
@@ -192,7 +192,7 @@ def growth(frame: pd.DataFrame) -> dict[str, float]:
 
 
 def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
-    """Write the table to a folder, each file with its provenance file.
+    """Write the table to a folder, in every format with its provenance file.
 
     Parameters
     ----------

@@ -215,7 +215,7 @@ def solution_of_rule(
     Parameters
     ----------
     values
-        Its solution; None if there is none, or it is infeasible.
+        The heuristic's solution; None if there is none, or it is infeasible.
     objective
         Value of the model's objective function.
     bound

@@ -36,8 +36,8 @@ def solve(
     Returns
     -------
     Where bundles and pods go; ties go to the lowest pod and station. The status is LIMIT if a
-    bundle that must be stored is left. For the bound, every bundle chooses its best pod
-    independently, and trips cost nothing.
+    bundle that must be stored is left, INFEASIBLE if no pod may take it. For the bound, every
+    bundle chooses its best pod independently, and trips cost nothing.
     """
     begin = perf_counter()
     best = np.minimum(-data.worth_s.max(axis=1, initial=-math.inf), data.leave_s)

@@ -60,12 +60,15 @@ class PickStations:
 
     @property
     def cadence_s(self) -> NDArray[np.float64]:
-        """Least time between two picks from the same pod: the longer of transfer and pick."""
+        """Least time between two picks from the same pod, shape (S,), in s.
+
+        This is the longer of transfer and pick.
+        """
         return np.maximum(self.unit_transfer_s, self.unit_pick_s)
 
     @property
     def change_s(self) -> NDArray[np.float64]:
-        """Least time between two picks from consecutive pods."""
+        """Least time between two picks from consecutive pods, shape (S,), in s."""
         return np.maximum(self.unit_transfer_s, self.unit_pick_s + self.changeover_s)
 
 
@@ -231,7 +234,7 @@ class RunBound:
 
     @property
     def end_effect_s(self) -> float:
-        """Maximum time per robot outside the window: a drive in, a service, a drive out."""
+        """Maximum time per robot outside the window, in s: a drive in, a service, a drive out."""
         inbound = np.concatenate([self.picking.inbound_s, self.refill.inbound_s])
         outbound = np.concatenate(
             [

@@ -25,7 +25,7 @@ def single_bounds(data: RunBound) -> dict[str, float]:
 
     Returns
     -------
-    Units per hour by name; each is at least the bound of `linear`, up to rounding.
+    Units per hour by name; each is at least the bound of the linear programme, up to rounding.
     """
     picking = data.picking
     cadence = picking.cadence_s

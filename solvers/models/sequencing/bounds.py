@@ -17,7 +17,7 @@ from rmfs.solvers.models.sequencing.data import Sequencing
 
 
 def covering(data: Sequencing) -> LinearProgram:
-    """Return a lower bound on the number of pods that together hold all needed SKUs.
+    """Formulate the covering problem: the fewest pods that together hold all needed SKUs.
 
     Parameters
     ----------
@@ -33,12 +33,12 @@ def covering(data: Sequencing) -> LinearProgram:
 
 
 def visits_bound(data: Sequencing) -> float:
-    """Return a lower bound on the number of visits of every plan.
+    """Return a lower bound on the number of visits of every plan; +inf if there is no plan.
 
     Parameters
     ----------
     data
-        The input; +inf if it is infeasible.
+        The input.
     """
     if not data.feasible:
         return math.inf
