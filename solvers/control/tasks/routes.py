@@ -1,4 +1,4 @@
-"""TA routes: combines storing one pod with fetching the next, for all robots at once."""
+"""TA routes: combines storing one pod with fetching the next, for all robots together."""
 
 from __future__ import annotations
 

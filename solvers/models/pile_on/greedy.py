@@ -1,4 +1,4 @@
-"""Pod match: the best call first, over all stations at once.
+"""Pod match: the best call of all stations first.
 
 Orders are placed wherever stock already covers them. Then the pod (or the set of pods for one
 order) with the greatest gain over all stations is called, and its station is filled; this is

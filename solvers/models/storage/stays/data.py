@@ -9,7 +9,7 @@ A stay lasts from the moment when a place is assigned to a pod until the pod has
 end)``. (Weidinger, Boysen, Briskorn 2018 decide on single places, that is, zones of one place.)
 Places of a zone are interchangeable. If no more than :math:`k_z` stays overlap at any time, each
 can have a place of its own, because interval graphs are perfect. A pod that is already stored is a
-stay that begins at once and is allowed only in its present zone.
+stay that begins now and is allowed only in its present zone.
 """
 
 from __future__ import annotations

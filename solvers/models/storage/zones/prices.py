@@ -119,7 +119,9 @@ def place_values(
     pod_class: NDArray[np.int64],
     stay_h: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Rate places for pods: travel, plus the price of the place, minus the worth of the pod.
+    """Rate places for pods: travel, delay, and price of the place minus worth of the pod.
+
+    Price and worth count for the duration of the stay.
 
     Parameters
     ----------
