@@ -34,11 +34,11 @@ class Found:
     Attributes
     ----------
     values
-        Its fields; None if there is no answer.
+        Fields of the answer; None if there is no answer.
     objective, bound
         As stated by the solver; nan if unknown.
     by
-        How it was found: method, seed, limits, status, work, ...
+        How the answer was found: method, seed, limits, status, work, ...
     """
 
     values: Plain | None
@@ -63,10 +63,10 @@ class Decision:
     data
         Its fields.
     provenance
-        Where it comes from: run, simulated time, decision problem, controller.
+        Where the question comes from: run, simulated time, decision problem, controller.
     asked
-        How the controller asked it: `by`, and the settings passed along with the data. Empty if no
-        controller asked it.
+        How the controller asked the question: `by`, and the settings passed along with the data.
+        Empty if no controller asked it.
     recorded
         The answer given in the run, if there was one.
     """

@@ -1,4 +1,4 @@
-"""Questions as mixed-integer programmes for any solver, and its solutions as answers.
+"""Questions as mixed-integer programmes for any solver, and solutions of solvers as answers.
 
 - `formulation`: the exact programme of each family; `pairs` and `routes` contain the programmes of
   families that the models solve without a matrix;

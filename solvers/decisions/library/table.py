@@ -49,7 +49,7 @@ class Row:
     value, bound
         Best known value and bound; nan if there is none.
     value_by, bound_by
-        How it was found: method and limit, or the name of a solver or a person.
+        How value and bound were found: method and limit, or the name of a solver or a person.
     value_when, bound_when
         Day of entry, and version and commit of rmfs.
     """
@@ -133,7 +133,7 @@ class Library:
         found
             The answer; its own bound is ignored.
         by
-            How it was found, for the table.
+            How answer or bound was found, for the table.
         bound
             A proven bound.
 

@@ -39,7 +39,7 @@ class Relaxed(NamedTuple):
     used
         Value of each route in the relaxation, from 0 to 1.
     iterations
-        Of the simplex method.
+        Number of simplex iterations.
     """
 
     robot: NDArray[np.float64]
@@ -59,7 +59,7 @@ class Chosen(NamedTuple):
     bound
         Lower bound on the cost of every choice among the known routes, in ticks.
     iterations
-        Of the simplex method.
+        Number of simplex iterations.
     """
 
     routes: list[Route] | None

@@ -36,7 +36,7 @@ class Route(NamedTuple):
 
     @property
     def repeats(self) -> set[int]:
-        """Places used more than once."""
+        """Places that the route uses more than once."""
         return {place for place in self.places if self.places.count(place) > 1}
 
 
