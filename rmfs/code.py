@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 NOT_SIMULATED = ("experiments",)
-"""Parts of the package that produce no results: changes in them require no new runs."""
+"""Sub-packages that do not influence a run: changes in them require no new runs."""
 
 SUFFIXES = (".py", ".so", ".pyd")
 
@@ -21,7 +21,7 @@ SUFFIXES = (".py", ".so", ".pyd")
 def code_hash() -> str:
     """Return a hash of the Python files and the compiled core, 16 hexadecimal digits.
 
-    It also distinguishes runs of a checkout with uncommitted changes.
+    `NOT_SIMULATED` is left out. Uncommitted changes in a checkout change the hash, too.
     """
     root = Path(__file__).resolve().parent
     state = hashlib.sha256()

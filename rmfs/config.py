@@ -17,13 +17,13 @@ from rmfs.errors import InputError
 from rmfs.files import read_bounded
 
 LARGEST_MIB = 4
-"""Size limit of a TOML file; such files are written by hand."""
+"""Size limit of a TOML file in MiB; such files are written by hand."""
 
 
 LARGEST = 1e9
-"""Largest value of any parameter: 1e9 s are 31 years; times are 64-bit microseconds."""
+"""Largest absolute value of a parameter that is neither infinite nor a seed; 1e9 s are 31 years."""
 SMALLEST = 1e-9
-"""Smallest size of any parameter other than 0, so that its reciprocal stays within bounds."""
+"""Smallest absolute value of a parameter that is not 0; its reciprocal stays within `LARGEST`."""
 LARGEST_SEED = 2**63 - 1
 """Largest seed: a signed 64-bit integer."""
 
@@ -31,8 +31,9 @@ LARGEST_SEED = 2**63 - 1
 class Model(pydantic.BaseModel):
     """Base class of all configuration blocks: unknown keys are errors, and values are immutable.
 
-    A number is 0, or its absolute value is between `SMALLEST` and `LARGEST`; a field may have a
-    narrower range. Booleans must be written as `true` or `false`.
+    A number is 0, infinite, or has an absolute value from `SMALLEST` to `LARGEST` (a `seed`: to
+    `LARGEST_SEED`); a field may have a narrower range. Booleans must be written as `true` or
+    `false`.
     """
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True, validate_default=True)
@@ -90,12 +91,17 @@ def read_toml(path: Path) -> Table:
 
 
 def parse_override(text: str) -> tuple[list[str], Any]:
-    """Parse one `--set a.b=value`; the value is TOML, or a string if it is a bare word.
+    """Parse one `--set a.b=value`; a value that is not valid TOML is taken as a string.
+
+    Returns
+    -------
+    tuple
+        The parts of the key, such as `["a", "b"]`, and the value.
 
     Raises
     ------
     InputError
-        If there is no `=` or the key is empty.
+        If there is no `=`, the key is empty, or the value is too long or too deeply nested.
     """
     key, separator, value = text.partition("=")
     if not separator or not key.strip():
@@ -110,7 +116,13 @@ def parse_override(text: str) -> tuple[list[str], Any]:
 
 
 def apply_overrides(table: Table, overrides: list[tuple[list[str], Any]]) -> Table:
-    """Return a copy of `table` with each (path, value) set; missing tables are created."""
+    """Return a copy of `table` with each (path, value) set; missing tables are created.
+
+    Raises
+    ------
+    InputError
+        If a path leads through a value that is not a table.
+    """
     result = _copied(table)
     for path, value in overrides:
         node = result
@@ -134,8 +146,8 @@ def validate(model: type[M], table: Table, source: str) -> M:
     Raises
     ------
     InputError
-        All problems on one line, each with its key; an unknown key is reported with the nearest
-        valid one.
+        If the table is invalid. The message lists all errors on one line, each with its key, and
+        for an unknown key the nearest valid one.
     """
     try:
         return model.model_validate(table)

@@ -12,9 +12,10 @@ OMITTED = "omitted"
 
 
 def digest(value: object) -> str:
-    """Return a hash of a dataclass of arrays, numbers, strings and collections of them.
+    """Return the SHA-256 of a value, 64 hexadecimal digits.
 
-    An object with a method `digested` is hashed by what that method returns.
+    The value is made of arrays, numbers, strings, dataclasses, dicts, tuples and lists. An object
+    with a method `digested` is hashed by what that method returns.
     """
     state = hashlib.sha256()
     _feed(state, value)

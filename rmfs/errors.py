@@ -3,8 +3,8 @@
 An `InputError` carries one line for the user: which file, which key, and what would be valid. The
 command line prints it and exits with code 2. A `RuleError` also carries one line: what a user's
 controller did wrong in a run. An `InternalError` is a defect that the program has detected itself;
-the command line writes a file that helps to reproduce it, and exits with code 1. Every other
-exception is a defect and keeps its traceback.
+the command line writes a file that helps to reproduce it, and exits with code 1. An exception that
+the command line does not handle is a defect and keeps its traceback.
 """
 
 from __future__ import annotations
@@ -38,12 +38,14 @@ class LayoutError(InputError):
 
 
 class RuleError(RuntimeError):
-    """A user's controller made an impossible decision; the run cannot continue.
+    """A user's controller decided something impossible, or returned None instead of decisions.
+
+    The run cannot continue.
 
     Parameters
     ----------
     message
-        One line: decision problem, rule, simulated time, decision, and why it is impossible.
+        One line: decision problem, rule, simulated time, and what is wrong with its decision.
     """
 
 

@@ -24,7 +24,7 @@ _PARTIAL = re.compile(r"\.(?P<target>.+)\.partial-[a-z0-9_]{8}")
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 LARGEST_MIB = 64
-"""Size limit of files that are read at once; the largest published layout has 4 MiB."""
+"""Default size limit, in MiB, of a file read as a whole; the largest published layout has 4 MiB."""
 
 
 def read_bounded(path: Path, largest_mib: int = LARGEST_MIB) -> bytes:
@@ -56,10 +56,12 @@ def read_bounded(path: Path, largest_mib: int = LARGEST_MIB) -> bytes:
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary path beside `path`; rename it to `path` on success, remove it on failure.
 
+    Missing parent folders are created.
+
     Raises
     ------
     InputError
-        If the folder cannot be written.
+        If `path` is a folder, its folder cannot be written, or the disk is full.
     """
     if path.is_dir():
         raise InputError(f"{path}: is a folder, not a file to write")
@@ -85,7 +87,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file (UTF-8), completely or not at all."""
+    """Write a text file (UTF-8), completely or not at all; raises errors as `replacing` does."""
     with replacing(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
@@ -94,24 +96,25 @@ def write_text(path: Path, text: str) -> None:
 def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True) -> Iterator[Path]:
     """Yield a temporary folder beside `target`, which is renamed to `target` on success.
 
-    The folder is created at once, so that a target that cannot be written is noticed before any
-    work is done. On an error or an interruption it is removed, together with any parents created
-    for it. The target is locked against other processes meanwhile.
+    The temporary folder is created before any work is done, so that a target that cannot be written
+    is noticed early. On an error or an interruption it is removed, together with any parents
+    created for it. The target is locked against other processes meanwhile.
 
     Parameters
     ----------
     mark
-        A file that every such folder contains: only these folders, and empty ones, are replaced.
+        Name of a file that identifies folders of this kind: an existing folder without this file
+        is replaced only if it is empty.
     what
-        What to call such a folder in messages.
+        What messages call a folder of this kind.
     replace
         Whether an existing folder of this kind may be replaced. Default True.
 
     Raises
     ------
     InputError
-        If the target cannot be written, is locked by another process, or exists and is not such a
-        folder or must not be replaced.
+        If the target cannot be written, is locked by another process, contains the working
+        directory, or exists and is of another kind or must not be replaced.
     """
     target = target.absolute()
     here = Path.cwd()

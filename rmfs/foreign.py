@@ -10,6 +10,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from rmfs.errors import InputError
+
 _READERS = {
     ".xinst": "rmfs.rawsimo.layout.xinst:read_xinst",
     ".xlayo": "rmfs.rawsimo.layout.xlayo:read_xlayo_table",
@@ -25,12 +27,16 @@ def read(path: Path) -> Any:
 
     Returns
     -------
-    Whatever that reader returns; see its documentation.
+    Any
+        What that reader returns; see its documentation.
 
     Raises
     ------
     InputError
-        If the file cannot be read.
+        If the file cannot be read, or no reader has its suffix.
     """
-    module, _, name = _READERS[path.suffix.lower()].partition(":")
+    reader = _READERS.get(path.suffix.lower())
+    if reader is None:
+        raise InputError(f"{path}: no reader for this suffix; valid: {', '.join(_READERS)}")
+    module, _, name = reader.partition(":")
     return getattr(import_module(module), name)(path)

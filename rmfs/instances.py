@@ -21,12 +21,13 @@ def names(kind: Kind) -> list[str]:
 
 
 def locate(kind: Kind, name_or_path: str) -> Path:
-    """Find the file for a path or the name of a shipped instance.
+    """Return the file at a path or, if there is none, the shipped instance of that name.
 
     Raises
     ------
     InputError
-        If neither exists; the message lists the shipped names.
+        If neither exists, in which case the message lists the shipped names, or the path is
+        inaccessible.
     """
     path = Path(name_or_path)
     try:

@@ -12,7 +12,10 @@ import numpy as np
 
 
 class Stream(IntEnum):
-    """The named streams; their numbers are part of the file format and are never reused."""
+    """The named streams.
+
+    A stream's number determines its random numbers in every run, so it is never changed or reused.
+    """
 
     LAYOUT = 0
     SKUS = 1

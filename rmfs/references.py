@@ -51,7 +51,7 @@ def resolve(reference: str | type, base: type[T], what: str) -> type[T]:
     Raises
     ------
     InputError
-        If it cannot be found or imported, or is not derived from `base`.
+        If the class cannot be found or imported, or is not derived from `base`.
     """
     found = reference if isinstance(reference, type) else _imported(reference, what)
     if isinstance(found, type) and issubclass(found, base):
@@ -67,7 +67,10 @@ _INSTALLED_ONLY: ContextVar[bool] = ContextVar("_INSTALLED_ONLY", default=False)
 
 @contextmanager
 def installed_only() -> Iterator[None]:
-    """Context manager in which only installed names are allowed, for users who may not run code."""
+    """Return a context in which `require_allowed` refuses references to code.
+
+    For requests, such as those of a page, that may name installed classes but not run code.
+    """
     token = _INSTALLED_ONLY.set(True)
     try:
         yield
@@ -76,12 +79,12 @@ def installed_only() -> Iterator[None]:
 
 
 def require_allowed(reference: str) -> None:
-    """Refuse a reference before importing anything if only installed names are allowed.
+    """Raise an error if references to code are refused; nothing is imported.
 
     Raises
     ------
     InputError
-        Within `installed_only`.
+        Within `installed_only`, whatever the reference.
     """
     if _INSTALLED_ONLY.get():
         raise InputError(f"{reference}: must be the name of something installed, not of code")
@@ -139,7 +142,10 @@ def reference_of(found: type) -> str:
 
 
 def name_of(found: type) -> str:
-    """Return the name by which this process finds a class, wherever it was defined."""
+    """Return a name by which `resolve` finds a class in this process, wherever it was defined.
+
+    A class that cannot be imported is kept in memory under this name.
+    """
     try:
         return reference_of(found) if found.__module__ != "__main__" else _remembered(found)
     except InputError:
@@ -147,7 +153,9 @@ def name_of(found: type) -> str:
 
 
 def plain(value: Any, name: Callable[[type], str]) -> Any:
-    """Return a value as it would be written to a file.
+    """Return a value with classes replaced by names, and with plain Python types throughout.
+
+    Tuples become lists, paths strings, and scalars of NumPy numbers of Python.
 
     Parameters
     ----------
@@ -173,7 +181,7 @@ def _remembered(found: type) -> str:
 
 
 def source_file(found: type) -> Path | None:
-    """Return the file that defines a class; None for a class typed at a prompt."""
+    """Return the file that defines a class; None if there is none, as for one typed at a prompt."""
     try:
         return Path(inspect.getfile(found))
     except (OSError, TypeError):

@@ -30,7 +30,13 @@ _force: ContextVar[bool] = ContextVar("force", default=False)
 
 @contextmanager
 def forced(force: bool = True) -> Iterator[None]:
-    """Context manager in which work starts even if it may not fit into memory."""
+    """Return a context in which `require` accepts work that may not fit into memory.
+
+    Parameters
+    ----------
+    force
+        False: `require` refuses such work, as it does outside of any context.
+    """
     token = _force.set(force)
     try:
         yield
@@ -46,7 +52,7 @@ def require(needed: float, what: str) -> None:
     needed
         Approximate number of bytes.
     what
-        Description of what needs the memory, in words and numbers.
+        Description of what needs the memory, in words and numbers, for the message.
 
     Raises
     ------
@@ -62,12 +68,15 @@ def require(needed: float, what: str) -> None:
 
 
 def spoken(size: float) -> str:
-    """Return a number of bytes as text for humans."""
+    """Return a number of bytes as text, in GB (10^9 bytes)."""
     return f"{size / 1e9:.0f} GB" if size >= 1e10 else f"{size / 1e9:.1f} GB"
 
 
 def available() -> float:
-    """Return the bytes that this process may still allocate, by the machine's limit and its own."""
+    """Return how many bytes this process may still allocate; infinite if that is unknown.
+
+    This is the lesser of the machine's available memory and the rest of the process's own limit.
+    """
     limits = [float("inf")]
     try:
         told = Path("/proc/meminfo").read_text("utf-8")

@@ -2,7 +2,7 @@
 
 A user error is reported as one line on standard error, with exit code 2. An interruption ends with
 exit code 130. A detected defect is reported as one line, with a file to send and exit code 1.
-Commands import their modules themselves, so that help and errors appear at once.
+Commands import their modules when they run, so that help and errors appear without delay.
 """
 
 from __future__ import annotations

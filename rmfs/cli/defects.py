@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def told(error: InternalError, arguments: list[str] | None) -> str:
-    """Return the line for the user: what happened, in which run, and what to report.
+    """Write a report of a defect to a file, and return the line for the user that names the file.
 
     Parameters
     ----------
@@ -33,7 +33,13 @@ def written(error: InternalError, arguments: list[str] | None) -> Path:
 
     Returns
     -------
-    Path of the file; in the folder for temporary files if the working folder is not writable.
+    Path
+        The file; in the folder for temporary files if the working folder is not writable.
+
+    Raises
+    ------
+    InternalError
+        The given error, if neither folder is writable.
     """
     from rmfs.measure.provenance import version
 

@@ -1,7 +1,7 @@
 """Exit codes of the command line."""
 
 UNSAFE = 1
-"""The checker found a trace unsafe, or a bound was exceeded: a defect."""
+"""The checker found a trace unsafe, an audit found a fault, or a bound was exceeded: a defect."""
 
 GIVEN_UP = 1
 """A run stopped before its end: no robot can move (possible in layouts that are not well-formed),

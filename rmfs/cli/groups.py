@@ -35,7 +35,7 @@ ELSEWHERE = {**SUB_COMMANDS, **COMMANDS}
 
 
 def names_of(kind: Literal["layouts", "scenarios", "controllers"]) -> Callable[[str], list[str]]:
-    """Return a function that completes the names of shipped instances."""
+    """Return a function that lists the shipped instances whose names begin with a given text."""
 
     def complete(incomplete: str) -> list[str]:
         from rmfs import instances
@@ -53,7 +53,7 @@ class LazyGroup(TyperGroup):
         return [*super().list_commands(ctx), *(n for n in ELSEWHERE if n not in self.commands)]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Return a command, or a stub with its help if it is not loaded."""
+        """Return a command; for one that is not loaded, a stub with its help."""
         if cmd_name in ELSEWHERE and cmd_name not in self.commands:
             return TyperGroup(name=cmd_name, help=ELSEWHERE[cmd_name][1])
         return super().get_command(ctx, cmd_name)
@@ -66,7 +66,10 @@ class LazyGroup(TyperGroup):
 
 
 def tell_defaults(command: Any) -> Any:
-    """Make the help of every option show its default, or that there is none."""
+    """Add `[default: none]` to the help of each option without a default; return the command.
+
+    Sub-commands are included.
+    """
     for one in getattr(command, "commands", {}).values():
         tell_defaults(one)
     for parameter in command.params:

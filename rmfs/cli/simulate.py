@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.recording import DecisionRecorder
 
 LONGEST = 100
-"""Most characters of a folder name that describe the changed parameters."""
+"""Maximum number of characters of a folder name that describe the changed parameters."""
 
 
 def run(
@@ -205,7 +205,10 @@ def kept_decisions(
 
 
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
-    """Simulate and show progress; if no robot can move any more, the run ends with a report.
+    """Simulate and show progress.
+
+    If no robot can move any more, a user's rule makes an impossible decision, an optimiser fails or
+    a replay deviates, the reason is printed and the command exits with code 1.
 
     Parameters
     ----------
@@ -246,7 +249,10 @@ def default_name(
     Parameters
     ----------
     changes
-        The `--set` arguments. If they are unsuitable or too long for a name, a hash replaces them.
+        The `--set` arguments. If they are unsuitable or too long for a name, unsuitable characters
+        are replaced, the text is cut to `LONGEST` characters, and a hash is added.
+    pacing
+        The pacing as specified by the user; part of the changes unless `instant`.
     """
     told = [text.replace(".name=", "=") for text in changes]
     told += [] if pacing == "instant" else [f"pacing={pacing}"]
@@ -260,7 +266,7 @@ def default_name(
 
 
 def proven(done: Run) -> CheckReport:
-    """Check the trace of a run."""
+    """Report the step, check the trace of a run, and return the result."""
     step("checking the trace")
     return done.check()
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def step(text: str) -> None:
-    """Report the current step, unless a progress bar does."""
+    """Print the current step on standard error, unless that is a terminal."""
     if not sys.stderr.isatty():
         print(f"rmfs: {text}", file=sys.stderr, flush=True)
 
@@ -27,7 +27,7 @@ def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, floa
     Parameters
     ----------
     wordy
-        Whether to print a line where there is no terminal. Default True.
+        Whether to print the line if standard error is not a terminal. Default True.
     """
     if not sys.stderr.isatty():
         yield lambda done, total: None if done or not wordy else step(text)
@@ -50,7 +50,11 @@ def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, floa
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Let SIGTERM, which batch systems send, end a command like Ctrl-C: nothing is half-written."""
+    """Return a context in which SIGTERM, sent by batch systems, acts like Ctrl-C.
+
+    A command that is ended leaves nothing half-written. Only the main thread can set this; in
+    others the context has no effect.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def footprint(run: Measured, report: CheckReport | None = None) -> pd.Series:
-    """Return the footprint of a finished run; see `rmfs.measure.dictionary`.
+    """Return the footprint of a finished run, one value per column of the data dictionary.
 
     Parameters
     ----------
@@ -41,14 +41,18 @@ def footprint(run: Measured, report: CheckReport | None = None) -> pd.Series:
 
 
 def series(run: Measured) -> pd.DataFrame:
-    """Return the time series of a run, one row per minute."""
+    """Return the table `series` of a run, one row per minute of the measured time."""
     from rmfs.measure import tables
 
     return tables.series(tables.Logs(run.recorder))
 
 
 def decisions(run: Measured) -> pd.DataFrame:
-    """Return the decisions of a run, one row per call of a controller that decided something."""
+    """Return the table `decisions` of a run.
+
+    It has one row per call in which a controller made decisions itself, and one per question to an
+    optimiser, in the measured time.
+    """
     from rmfs.measure import tables
 
     return tables.decisions(tables.Logs(run.recorder))

@@ -20,13 +20,13 @@ class Measure(Observer):
     and computes the columns when the run has ended. A measure that only needs data that is logged
     anyway (`EndedRun.logs`, `EndedRun.tables`) overrides no callback.
 
-    A run can be copied or saved at any moment, together with its measures. They must therefore hold
-    plain data, not local functions or open files. The class is instantiated without arguments.
+    A run can be copied or saved at any moment, together with its measures. Measures must therefore
+    hold plain data, not local functions or open files. The class is instantiated without arguments.
 
     Attributes
     ----------
     columns
-        The columns that it adds to the footprint.
+        The columns that the measure adds to the footprint.
     """
 
     columns: ClassVar[Sequence[Column]] = ()

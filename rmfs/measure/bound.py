@@ -26,14 +26,14 @@ class BoundExceededWarning(UserWarning):
 
 
 def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float) -> float:
-    """Return an upper bound on the units per hour of any run of a warehouse (docs: bounds).
+    """Return an upper bound on the units picked per hour in any run of a warehouse (docs: bounds).
 
     Parameters
     ----------
     times
         The traffic model, which knows lower bounds of travel times.
     duration_s
-        Length of the window in which units are counted.
+        Length of the time in which units are counted, in s.
     """
     module, _, name = BOUND.partition(":")
     bound: float = getattr(importlib.import_module(module), name)(layout, skus, times, duration_s)
@@ -41,9 +41,12 @@ def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration
 
 
 def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
-    """Return a layout with the shortest times pickers can achieve; None if there is no minimum.
+    """Return a layout with the shortest handling times that its pickers can achieve.
 
-    Without pickers it is the layout itself.
+    Returns
+    -------
+    Layout or None
+        The layout itself if `staff` is None; None if a handling time has no positive minimum.
     """
     if staff is None:
         return layout
@@ -60,14 +63,14 @@ def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
 
 
 def warn_if_exceeded(units_per_h: float, bound: float) -> None:
-    """Warn if a run picked more than its upper bound.
+    """Issue a `BoundExceededWarning` if a run picked more than its upper bound.
 
     Parameters
     ----------
     units_per_h
         Units picked per hour.
     bound
-        Maximum, including end effects; see `units_per_h_bound`.
+        Upper bound on the units per hour; see `units_per_h_bound`.
     """
     if units_per_h > bound:
         told = f"{units_per_h} units per hour were picked, and no run can pick more than {bound}"

@@ -35,13 +35,13 @@ class Column:
         Name of the column; it ends with the unit if there is one: `_s`, `_m`, `_h` (per hour),
         `_share` (0 to 1).
     dtype
-        The pandas type of the column.
+        The pandas type of the column, one of `DTYPES`.
     unit
         Unit in words, or empty for names and identifiers.
     meaning
         Definition; empty cells are explained where they can occur.
     measured
-        Whether it depends on machine and time, so that it is not reproducible.
+        Whether its values depend on the machine, so that they are not reproducible.
     better
         Which direction is better for a warehouse: more, less, or neither if it is descriptive.
     """
@@ -55,7 +55,7 @@ class Column:
 
     @property
     def is_number(self) -> bool:
-        """Whether means can be computed."""
+        """Whether the column holds numbers, of which means can be computed."""
         return self.dtype in NUMBERS
 
     def to_table(self) -> dict[str, Any]:

@@ -37,11 +37,11 @@ class Measured(Protocol):
 
     @property
     def warmup_s(self) -> float:
-        """Simulated time before the measured time starts."""
+        """Simulated time before the measured time starts, in s."""
 
     @property
     def duration_s(self) -> float:
-        """Length of the measured time."""
+        """Length of the measured time, in s."""
 
     @property
     def recorder(self) -> Recorder:
@@ -89,7 +89,7 @@ class Recorded(Measured, Protocol):
 
     @property
     def interventions(self) -> Sequence[tuple[float, Choice]]:
-        """Controllers exchanged interactively, with the times (s)."""
+        """For each interactive exchange of a controller, its time (s) and the new choice."""
 
     @property
     def slow_robots(self) -> list[tuple[int, int, int, float]]:
@@ -116,9 +116,9 @@ class EndedRun:
     start_s, end_s
         Start and end of the measured time, in seconds since the start of the run.
     warmup_s, duration_s
-        Simulated time before the measured time, and length of the measured time.
+        Simulated time before the measured time, and length of the measured time, in s.
     wall_s
-        Wall time of the simulation.
+        Wall time of the simulation in s.
     recorder
         The recorded events, warm-up included.
     layout, world
@@ -149,5 +149,5 @@ class EndedRun:
         return Made(self.logs)
 
     def handled(self, column: str) -> int:
-        """Return the total of a column of the table `stations`, such as `units_picked`."""
+        """Return the sum of a column of counts in the table `stations`, such as `units_picked`."""
         return int(self.tables["stations"][column].sum())

@@ -20,19 +20,19 @@ WH = 3600.0
 class EnergyLog:
     """Energy drawn by robots, if the scenario models it.
 
-    The energy that a robot draws between two visits to pick stations is divided among the units
-    picked in the second visit. It thus includes the trip, waiting, storing the previous pod, and
-    charging.
+    All that a robot draws from the end of one visit with picked units to the end of the next is
+    divided equally among the units of the latter: driving, waiting, storing the previous pod, and
+    the way to a charger.
 
     Attributes
     ----------
     samples
-        Per minute, in J since the last reset: energy drawn and charged by all robots; and mean and
-        minimum energy in the batteries in J, nan without batteries.
+        Per minute, in J: energy drawn and energy charged by all robots since the last reset, and
+        mean and minimum energy in the batteries, nan without batteries.
     per_order
-        Energy in J of each order's units so far, by index.
+        Energy in J drawn for the units of each order so far, by index of the order.
     final
-        Totals counted by traffic; empty if energy is not modelled.
+        `Traffic.energy` at the end of the run; empty if energy is not modelled.
     batteries
         The robots' batteries, if there are any.
     """
@@ -52,7 +52,7 @@ class EnergyLog:
         self._before = [0.0] * robots
 
     def sampled(self) -> None:
-        """Add the energy drawn by all robots."""
+        """Add a sample."""
         if self._traffic is not None:
             now = self._traffic.energy()
             levels = now["level_j"]
@@ -63,12 +63,12 @@ class EnergyLog:
             self.samples.append((used, charged, mean, least))
 
     def picked(self, order: int, station: int) -> None:
-        """Record a unit of the current visit."""
+        """Record that a unit of an order was picked in the current visit at a station."""
         if self._traffic is not None:
             self._units.setdefault(station, []).append(order)
 
     def left(self, station: int, robot: int) -> None:
-        """Divide the energy drawn by the robot among the units of the visit."""
+        """Divide the energy drawn by the robot among the units of its visit, which has ended."""
         orders = self._units.pop(station, None)
         if self._traffic is None or not orders:
             return
@@ -86,7 +86,7 @@ class EnergyLog:
                 self.final["level_j"] = np.full(len(self.final["level_j"]), nan)
 
     def per_interval_wh(self, which: int) -> NDArray[np.float64]:
-        """Return energy per minute in Wh: drawn (0) or charged (1)."""
+        """Return the energy of all robots per minute in Wh: drawn (`which` 0) or charged (1)."""
         values = [0.0, *(sample[which] for sample in self.samples)]
         wh: NDArray[np.float64] = np.diff(np.array(values)) / WH
         return wh

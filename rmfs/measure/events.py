@@ -88,7 +88,7 @@ ROW = Struct(f"{len(COLUMNS)}q")
 _row = ROW.pack
 
 MOST = 2**31 - 1
-"""Largest number that a column can hold."""
+"""Largest number that a column can hold in a file."""
 
 KINDS = [kind.name.lower().replace("_", "-") for kind in Happening]
 """The kinds as words, as they are written to files."""
@@ -134,7 +134,7 @@ def _unit(pick: Pick) -> Unit:
 
 
 class EventLog(Observer):
-    """Records all events of a run.
+    """Records all events of a run except motion.
 
     Attributes
     ----------
@@ -190,7 +190,7 @@ class EventLog(Observer):
             self.picks_changed(time_s, robot)
 
     def picks_changed(self, time_s: float, robot: int) -> None:
-        """Record units bound to, or unbound from, the pod of a robot."""
+        """Record units bound to the pod of a robot, or unbound from it, since the last call."""
         if self._world is None:
             return
         task = self._world.robots[robot].task
@@ -230,7 +230,7 @@ class EventLog(Observer):
             self._add_lines(self._now_s, order)
 
     def slot_freed(self, order: Order) -> None:
-        """Record that a part of an order left its slot."""
+        """Record that a part of a split order left its slot; other orders are not recorded here."""
         if order.whole is not None or order.parts:
             self._add_order(self._now_s, Happening.PART_COMPLETED, order)
 

@@ -88,7 +88,12 @@ def fill(
     Parameters
     ----------
     tables
-        All tables of the run, if they have already been made.
+        All tables of the run, if they have already been made. Default: they are made here.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written.
     """
     from rmfs.measure.events import as_table
     from rmfs.measure.footprints import all_tables
@@ -128,7 +133,7 @@ def write_csv(run: RunFolder) -> list[Path]:
 
 
 def plain(value: Any) -> Any:
-    """Return a value for JSON: infinite and missing numbers become strings."""
+    """Return a value for JSON, in which infinite numbers and nan have become strings."""
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -209,13 +214,13 @@ class RunFolder(Results):
         return check(self.layout, trace, until_us=self.told.end_us, slow=slow)
 
     def replayed(self) -> tuple[Layout, pd.DataFrame, pd.DataFrame]:
-        """Return consistent layout, motion and events, which is all that a replay needs.
+        """Return layout, motion and events, checked against each other, as a replay needs them.
 
         Raises
         ------
         InputError
-            If the run was made without a trace, or a file is truncated, of another version, or
-            contains impossible robots, places, pods, stations, kinds or times.
+            If the run was made without a trace, or a file is missing, truncated, of another
+            version, or contains impossible robots, places, pods, stations, kinds or times.
         """
         layout, motion, events = self.layout, self.trace, self.events
         skus = len(self.table("skus"))
@@ -251,12 +256,13 @@ class RunFolder(Results):
 
 
 def load_run(path: str | Path) -> RunFolder:
-    """Load a run folder.
+    """Load a run folder; its tables are read when they are used.
 
     Raises
     ------
     InputError
-        If it is not a run folder.
+        If it is not a run folder, or its `run.json` cannot be read, is corrupted or has another
+        format.
     """
     path = Path(path)
     file = path / PARAMETERS

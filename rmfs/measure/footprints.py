@@ -26,7 +26,8 @@ def footprint(run: EndedRun, measures: Sequence[Measure]) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If a measure returns columns that it does not declare, or values of the wrong type.
+        If a measure does not return exactly the columns that it declares, or returns a value of the
+        wrong type.
     """
     values: dict[str, Any] = {}
     for measure in measures:
@@ -53,7 +54,7 @@ def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd
 def some_tables(
     run: Measured, names: Iterable[str], report: CheckReport | None = None
 ) -> dict[str, pd.DataFrame]:
-    """Make the footprint of a run and the named tables, and no others."""
+    """Make the footprint of a run and the named tables; `report` fills `collisions`."""
     ended = EndedRun(run, report)
     made = {"footprint": footprint(ended, run.measures)}
     return made | {name: ended.tables[name] for name in names}

@@ -21,11 +21,11 @@ class PackingLog:
     given
         The scenario's packing parameters; None without packing.
     parcels
-        Packed orders and, at the end of the run, those not yet packed: `parcel_row`.
+        Packed orders and, at the end of the run, those not yet packed; rows as in `parcel_row`.
     totes
         Totes of these orders; `consolidated_s` is that of the parcel.
     held
-        Periods in which a tote could not leave its pick station.
+        Periods in which a tote could not leave its pick station, in s.
     """
 
     def __init__(self) -> None:
@@ -53,7 +53,7 @@ class PackingLog:
             self.totes.add(parcel.order.index, tote.station, *times, tote.by_hand)
 
     def ended(self, time_s: float) -> None:
-        """Record the parcels that are not packed yet."""
+        """Record the parcels that are not packed yet, and the totes that are held, at the end."""
         wall = None if self._world is None else self._world.put_wall
         if wall is None:
             return
@@ -64,7 +64,7 @@ class PackingLog:
 
 
 def parcel_row(parcel: Parcel) -> tuple[Any, ...]:
-    """Return the data of a parcel for the tables."""
+    """Return the row of a parcel in `PackingLog.parcels`."""
     order = parcel.order
     first_s = parcel.totes[0].arrived_s
     for tote in parcel.totes:

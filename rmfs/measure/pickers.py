@@ -19,9 +19,9 @@ class PickerLog:
     staff
         The pickers; None if the scenario has none.
     units
-        One row per picked unit, in order.
+        One row per picked unit, by time.
     presence
-        Periods of presence of pickers at stations.
+        Periods of presence of pickers at stations, in s.
     """
 
     def __init__(self) -> None:
@@ -34,7 +34,7 @@ class PickerLog:
 
     @property
     def given(self) -> Pickers | None:
-        """The scenario's parameters of pickers."""
+        """The scenario's parameters of pickers; None if it has none."""
         return None if self.staff is None else self.staff.given
 
     def begin(self, staff: Staff) -> None:

@@ -49,13 +49,13 @@ class Picture(Figure):
 
 
 def picture(run: Results, what: str) -> Figure:
-    """Draw a plot; the heat map has axes for each tier.
+    """Draw a plot of a run; the heat map has axes for each tier.
 
     Parameters
     ----------
     what
-        A name in `PICTURES`. For the heat map, a count by task or load can be selected:
-        `heat:loaded_visits`, `heat:pick_waiting_s` (columns of the table `heat`).
+        A name in `PICTURES` or `ALIASES`. For the heat map, a count by task or load can be
+        selected: `heat:loaded_visits`, `heat:pick_waiting_s` (columns of the table `heat`).
 
     Raises
     ------

@@ -126,7 +126,10 @@ def own_measures(run: Measured) -> list[type[Measure]]:
 
 
 def source(part: str, given: str) -> dict[str, Any]:
-    """Return name, file and hash of an input; only the name if it did not come from a file."""
+    """Return name, file and SHA-256 of an input.
+
+    The name is `given`, and the others are None, if the input did not come from a file.
+    """
     try:
         path = instances.locate(KINDS[part], given)
         content = _hash(path)
@@ -151,7 +154,16 @@ def layout_parameters(
 ) -> dict[str, Any] | None:
     """Return the parameters from which a layout was generated, after overrides, with all defaults.
 
-    Empty for an explicit layout, which is identified by its digest.
+    Returns
+    -------
+    dict or None
+        The parameters; None for an explicit layout or one given as an object, which its digest
+        identifies.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or its parameters are invalid.
     """
     try:
         path = instances.locate("layouts", given)
@@ -181,7 +193,7 @@ def _size(layout: Layout) -> dict[str, Any]:
 
 
 def version() -> str:
-    """Return the installed version of rmfs."""
+    """Return the installed version of rmfs, or `unknown`."""
     try:
         return metadata.version("rmfs")
     except metadata.PackageNotFoundError:
@@ -193,7 +205,7 @@ def commit() -> dict[str, Any]:
 
     Changes in `results` are ignored, so that publishing one table does not mark the next one.
 
-    Both are empty if rmfs is installed from a wheel: a repository that merely contains the
+    Both are None if rmfs is installed from a wheel: a repository that merely contains the
     environment does not track this file.
     """
     here = Path(__file__)
@@ -221,7 +233,7 @@ def _git(folder: Path, *arguments: str) -> str | None:
 
 
 def machine() -> dict[str, Any]:
-    """Return the properties of the machine on which measured columns depend."""
+    """Return the properties of this machine on which measured columns depend."""
     return {
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.release()}",

@@ -44,19 +44,19 @@ class Recorder(Observer):
     Attributes
     ----------
     start_s, end_s
-        Start and end of the measured time.
+        Start and end of the measured time, in s since the start of the run.
     order_stream, bundle_stream
-        The orders and the bundles of a file, if the scenario names one.
+        The orders and the bundles of a file; None if the scenario draws them.
     units
         Picked units.
     lines
         Finished lines, with the robot that brought the last unit, and the end of its handling.
     orders
-        Completed orders: `order_row`.
+        Completed and cancelled orders; rows as in `order_row`.
     open_orders
-        Orders not yet completed, by index.
+        Orders neither completed nor cancelled, by index.
     bundles
-        Stored bundles: `bundle_row` and the robot.
+        Stored bundles; rows as in `bundle_row`, followed by the robot.
     open_bundles
         Bundles not yet stored, by index.
     visits
@@ -69,23 +69,25 @@ class Recorder(Observer):
     lifts
         Liftings of pods.
     calls
-        Calls of controllers that led to a decision; `problem` is an index into `problems`.
+        Calls in which a controller made decisions itself, without an optimiser; `problem` is an
+        index into `problems`.
     problems
-        Decision problems in the order in which they were first decided.
+        Decision problems in the order of their first such calls.
     asked
-        Number and wall time of all calls since the warm-up, by problem.
+        Number and wall time (s) of all calls of controllers since the warm-up, by decision problem.
     questions
         Questions to optimisers, in order.
     solutions
         Their solutions as text, by number of the question.
     by_rule
-        Decisions since the warm-up of controllers with optimisers that used none, by problem.
+        Number of decisions since the warm-up that controllers with optimisers made by their own
+        rule, by decision problem.
     switches
         Stations switched on or off.
     early_trips
         Trips that ended before the measured time.
     samples
-        Per minute: time, and the fleet's totals of distance and times since the last reset.
+        Per minute: time (s), and the fleet's totals of distance and times since the last reset.
     energy
         Energy drawn by robots.
     packing
@@ -93,7 +95,7 @@ class Recorder(Observer):
     pickers
         Pickers at the pick stations.
     charge_kinds
-        Numbers of the tasks in which robots charge.
+        Kinds of tasks in which robots charge, by their numbers in `tasks`.
     """
 
     def __init__(self) -> None:
@@ -155,7 +157,7 @@ class Recorder(Observer):
 
     @property
     def duration_s(self) -> float:
-        """Length of the measured time."""
+        """Length of the measured time, in s."""
         return self.end_s - self.start_s
 
     def run_started(self, run: Observed) -> None:
@@ -209,7 +211,7 @@ class Recorder(Observer):
         return {"order_redraws": world.order_redraws, "orders_short": world.orders_short}
 
     def sampled(self, time_s: float) -> None:
-        """Add up the robots' motion."""
+        """Record the fleet's totals of motion, and its energy."""
         totals = {name: float(values.sum()) for name, values in self.traffic.motion().items()}
         self.samples.append((time_s, totals))
         self.energy.sampled()
@@ -228,7 +230,7 @@ class Recorder(Observer):
         del self.open_orders[order.index]
 
     def tote_held(self, station: int, from_s: float, to_s: float) -> None:
-        """Record the wait."""
+        """Record how long a tote could not leave its station."""
         self.packing.held.add(station, from_s, to_s)
 
     def order_packed(self, parcel: Parcel) -> None:
@@ -255,7 +257,7 @@ class Recorder(Observer):
         self.pickers.handled(handled)
 
     def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
-        """Record the presence."""
+        """Record how long a picker was present."""
         self.pickers.presence.add(picker, station, from_s, to_s)
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
@@ -285,7 +287,7 @@ class Recorder(Observer):
         self.energy.left(station, robot)
 
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
-        """Record the work."""
+        """Record how long a station was busy."""
         self.busy.add(station, from_s, to_s)
         self._busy_until[station] = to_s
 
@@ -329,7 +331,7 @@ class Recorder(Observer):
 
 
 def order_row(order: Order) -> tuple[Any, ...]:
-    """Return the data of an order for the tables."""
+    """Return the row of an order in `Recorder.orders`."""
     return (
         order.index,
         order.station,
@@ -347,7 +349,7 @@ def order_row(order: Order) -> tuple[Any, ...]:
 
 
 def bundle_row(bundle: Bundle) -> tuple[Any, ...]:
-    """Return the data of a bundle for the tables."""
+    """Return the row of a bundle in `Recorder.bundles`, without the robot."""
     return (
         bundle.stored_s,
         bundle.created_s,

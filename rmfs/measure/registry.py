@@ -78,7 +78,10 @@ def find_all(given: Iterable[str | type[Measure]]) -> list[type[Measure]]:
 
 
 def described(measures: Iterable[type[Measure]]) -> list[dict[str, Any]]:
-    """Return descriptions of users' measures by which they can be found again."""
+    """Return descriptions of users' measures: name, reference, hash of the source, and columns.
+
+    The reference is None for a measure defined in a notebook, which cannot be found again.
+    """
     told = []
     for measure in measures:
         file = source_file(measure)
@@ -98,7 +101,7 @@ def described(measures: Iterable[type[Measure]]) -> list[dict[str, Any]]:
 
 
 def columns_of(told: Sequence[dict[str, Any]]) -> list[Column]:
-    """Create and register the columns described by `described`."""
+    """Return the columns in the result of `described`, and register them for tables and plots."""
     columns = [Column.from_table(column) for one in told for column in one["columns"]]
     learn(columns)
     return columns

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 TEMPLATE = Path(__file__).with_name("report.html.jinja")
 
 SHOWN = ("stations", "controllers")
-"""Tables that are short enough to be shown completely."""
+"""Tables that the report shows completely."""
 
 INPUTS = ("layout", "scenario", "controllers", "overrides", "notes")
 """Keys of `run.json` that describe what was simulated; the others describe its provenance."""

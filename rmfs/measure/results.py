@@ -40,7 +40,7 @@ class Results(ABC):
         Raises
         ------
         InputError
-            If there is no such table.
+            If there is no such table, or it cannot be read.
         """
 
     @abstractmethod
@@ -50,7 +50,7 @@ class Results(ABC):
         Raises
         ------
         InputError
-            If there is no trace.
+            If there is no trace, or it is invalid.
         """
 
     @abstractmethod
@@ -80,7 +80,7 @@ class Results(ABC):
         Raises
         ------
         InputError
-            If there is no such plot.
+            If there is no such plot, or its table cannot be read.
         """
         from rmfs.measure.pictures import picture
 
@@ -102,7 +102,7 @@ class Results(ABC):
         path
             The HTML file to write. Default: a temporary file.
         open_browser
-            Whether to open it in a browser. Default: unless in a notebook.
+            Whether to open the page in a browser. Default: unless in a notebook.
         height
             Height of the frame in a notebook, in pixels.
 

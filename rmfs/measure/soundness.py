@@ -27,7 +27,7 @@ AFTER_US = 86_400_000_000
 """Margin after the end of a run (us), in which robots complete trips; none takes a day."""
 LARGEST_SPEED_M_S = 1000.0
 LARGEST_ANGLE_RAD = 100.0
-"""Largest heading: a few full turns."""
+"""Largest absolute value of a heading, in rad: about 16 full turns."""
 
 
 REALS = ("heading0_rad", "heading1_rad", "top_speed_m_s")
@@ -79,12 +79,12 @@ def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int
     path
         The file, for messages.
     end_us
-        End of the run; nothing may start much later.
+        End of the run; no row may start more than `AFTER_US` later.
 
     Raises
     ------
     InputError
-        If a row is impossible; the message names the first one.
+        If a row is impossible, or a robot has no rows; the message names a row or the robot.
     """
     _within(
         path,
@@ -115,7 +115,9 @@ def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int
 def require_events(
     path: Path, events: pd.DataFrame, layout: Layout, skus: int, end_us: int
 ) -> None:
-    """Make sure that events are possible in a layout; parameters and errors as above.
+    """Make sure that events are possible in a layout.
+
+    Parameters and errors are those of `require_motion`, but no event may be later than `end_us`.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ class Steps:
     change
         Size of the changes, one number for all or one for each time.
     initial
-        Its value before the first change.
+        Value of the function before the first change.
     """
 
     def __init__(self, time_s: ArrayLike, change: ArrayLike, initial: float = 0.0) -> None:
@@ -36,7 +36,7 @@ class Steps:
 
     @classmethod
     def between(cls, begin_s: ArrayLike, end_s: ArrayLike) -> Steps:
-        """Return the number of open intervals over time; nan ends are still open."""
+        """Return the number of open intervals over time; one whose end is nan stays open."""
         begins, ends = np.asarray(begin_s, np.float64), np.asarray(end_s, np.float64)
         sign = np.concatenate([np.ones(len(begins)), -np.ones(len(ends))])
         return cls(np.concatenate([begins, ends]), sign)
@@ -47,11 +47,11 @@ class Steps:
         return Steps(self._times, np.diff(above), above[0])
 
     def at(self, time_s: ArrayLike) -> Floats:
-        """Return the values just after each time."""
+        """Return the values just after each time, in the shape of `time_s`."""
         return self._values[np.searchsorted(self._times, time_s, side="right")]
 
     def mean(self, begin_s: float, end_s: float) -> float:
-        """Return the time average over an interval; nan if it is empty."""
+        """Return the time average over an interval; nan for an empty interval."""
         if end_s <= begin_s:
             return float("nan")
         inside = (self._times > begin_s) & (self._times < end_s)
@@ -61,7 +61,7 @@ class Steps:
         return fsum(self.at(knots[:-1]) * np.diff(knots)) / (end_s - begin_s)
 
     def most(self, begin_s: float, end_s: float) -> float:
-        """Return the maximum within an interval; nan if it is empty."""
+        """Return the maximum within an interval; nan for an empty interval."""
         if end_s <= begin_s:
             return float("nan")
         inside = self._times[(self._times > begin_s) & (self._times < end_s)]
@@ -69,7 +69,10 @@ class Steps:
 
 
 def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
-    """Return the total length of disjoint intervals, sorted by start, up to each time, in s."""
+    """Return how much of some intervals lies before each time, in s, in the shape of `at_s`.
+
+    The intervals must be disjoint and sorted by start.
+    """
     if not len(begin_s):
         return np.zeros(len(at_s))
     done = np.cumsum(end_s - begin_s)
@@ -79,7 +82,7 @@ def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
 
 
 def counts(time_s: ArrayLike, edges_s: Floats) -> NDArray[np.int64]:
-    """Count events in (edge k, edge k + 1]; the first interval includes its start."""
+    """Count the events in each interval (edge k, edge k + 1]; the first also includes edge 0."""
     times = np.sort(np.asarray(time_s, np.float64))
     below = np.searchsorted(times, edges_s, side="right")
     below[0] = np.searchsorted(times, edges_s[0], side="left")

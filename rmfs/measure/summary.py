@@ -90,7 +90,7 @@ class Summary:
 
 
 def summarised(footprint: pd.Series) -> Summary:
-    """Return the main figures; `-` marks what was not measured."""
+    """Return the main figures and those of users' measures; `-` marks what was not measured."""
     names = " / ".join(footprint[["layout", "scenario", "controllers"]])
     return Summary(
         f"{names}, seed {footprint['seed']}",
@@ -107,14 +107,14 @@ def own_columns(footprint: pd.Series) -> list[Column]:
 
 
 def figure(footprint: pd.Series, column: Column) -> tuple[str, str]:
-    """Return label and value of a column that is not one of the main figures."""
+    """Return label and value, as text, of a column that is not one of the main figures."""
     label = f"{column.name}, {column.unit}" if column.unit else column.name
     form = "{:,.6g}" if column.is_number else "{}"
     return label, shown(footprint[column.name], column.name, form)
 
 
 def shown(value: Any, column: str, form: str) -> str:
-    """Return a formatted figure, or `-` for what was not measured."""
+    """Return a figure as text (`distance_m` in km), or `-` for what was not measured."""
     import pandas as pd
 
     if pd.isna(value):

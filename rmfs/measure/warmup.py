@@ -14,7 +14,7 @@ BATCH = 5
 
 
 def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
-    """Return the number of observations to drop, by the marginal standard error rule.
+    """Return the number of initial observations to drop, by the marginal standard error rule.
 
     Of the batch means Z_1 ... Z_n the first d are dropped, where d <= n / 2 minimises
     sum over j > d of (Z_j - mean)² / (n - d)² (White 1997; MSER-5 with batches of five).

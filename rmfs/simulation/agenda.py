@@ -17,7 +17,7 @@ LAST = 9
 
 
 def us_at(time_s: float) -> int:
-    """Return the first microsecond that is not before a time."""
+    """Return the first microsecond that is not before a time given in s."""
     time_us = ceil(time_s * 1e6)
     return time_us if time_us / 1e6 >= time_s else time_us + 1
 
@@ -47,7 +47,7 @@ class Agenda:
 
     @property
     def next_us(self) -> int:
-        """Time of the next entry, `NEVER_US` if there is none."""
+        """Time of the next entry in microseconds, `NEVER_US` if there is none."""
         if self._cancelled:
             self._drop_cancelled()
         return self._heap[0][0] if self._heap else NEVER_US
@@ -63,7 +63,7 @@ class Agenda:
         return self.at(self.now_us + us, callback)
 
     def cancel(self, serial: int) -> None:
-        """Cancel an entry that has not been called yet."""
+        """Cancel an entry by its serial number; it must not have been called yet."""
         self._cancelled[serial] = None
 
     def run_due(self) -> None:
@@ -77,11 +77,11 @@ class Agenda:
                 callback()
 
     def when_settled(self, callback: Callable[[], None]) -> None:
-        """Call back at this instant, after the controllers have decided."""
+        """Add a callback for this instant, to be called after the controllers have decided."""
         self._settled.append(callback)
 
     def run_settled(self) -> bool:
-        """Call what waits for the decisions of this instant; return whether there was anything."""
+        """Call everything added by `when_settled`; return whether there was anything."""
         if not self._settled:
             return False
         callbacks, self._settled = self._settled, []

@@ -1,4 +1,4 @@
-"""Times at which controllers need to be asked."""
+"""Times at which controllers want to be asked, as they state them by `next_event_s`."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Alarms:
     Parameters
     ----------
     due
-        Notified of a problem whose controller is due.
+        Called with each decision problem whose controller is due.
     outside
-        Problems decided outside; their rules still specify times.
+        Decision problems decided outside; their rules still specify times.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class Alarms:
             self._enter(problem)
 
     def cancel(self, problem: Problem) -> None:
-        """Cancel the entry of a controller."""
+        """Cancel the entry of a problem's controller, if it has one."""
         if problem in self._set:
             self._agenda.cancel(self._set.pop(problem)[1])
 

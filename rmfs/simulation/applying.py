@@ -64,9 +64,9 @@ class Applying:
         Raises
         ------
         ValueError
-            If it violates a rule of the world; nothing has changed then.
+            If the decision violates a rule of the world; nothing has changed then.
         TypeError
-            If it is not a decision.
+            If `decision` is not a decision.
         """
         how = self._how.get(type(decision))
         if how is not None:
@@ -87,7 +87,7 @@ class Applying:
         self._events.bundle_promised(decision.bundle)
 
     def release_pod(self, decision: say.ReleasePod) -> None:
-        """Release the bundles promised to a pod."""
+        """Release the bundles promised to a pod, so that they can go to a station."""
         assigned = self._world.release_bundles(decision.pod)
         self._events.bundles_released(decision.pod)
         for bundle in assigned:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class ArrivalProcess:
-    """Asks the scenario for arrivals, at the times it specifies and after every change.
+    """Asks the scenario for arrivals whenever `top_up` is called, and adds them to the world.
 
     It also represents the state of the run to the scenario (`rmfs.scenario.State`).
 
@@ -33,7 +33,7 @@ class ArrivalProcess:
     seed
         Seed of the run.
     wanted
-        Called when arrivals may be due.
+        Called at the times that the scenario specifies, so that `top_up` is called at that instant.
     recorder
         Records all orders and bundles.
     """
@@ -66,13 +66,13 @@ class ArrivalProcess:
 
     @property
     def order_stream(self) -> OrderStream | None:
-        """The orders of a file, if the scenario names one."""
+        """The orders of a file; None if the scenario draws its orders."""
         stream = self._orders.stream
         return stream if isinstance(stream, OrderStream) else None
 
     @property
     def bundle_stream(self) -> BundleStream | None:
-        """The bundles of a file, if the scenario names one."""
+        """The bundles of a file; None if the scenario draws its bundles."""
         stream = self._bundles.stream
         return stream if isinstance(stream, BundleStream) else None
 
@@ -132,12 +132,12 @@ class ArrivalProcess:
 
     @property
     def waiting_orders(self) -> int:
-        """Orders not yet at a station."""
+        """Number of orders not yet assigned to a station."""
         return len(self._world.orders.orders)
 
     @property
     def waiting_bundles(self) -> int:
-        """Bundles not yet assigned to a station and a pod."""
+        """Number of bundles that lack a station, a pod, or both."""
         return len(self._world.bundles.bundles)
 
     @property
@@ -152,22 +152,22 @@ class ArrivalProcess:
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:
-        """Stored units of each SKU minus ordered units."""
+        """Available units minus ordered units not bound to pods, per SKU, shape (K,)."""
         return self._world.inventory.uncommitted
 
     @property
     def incoming(self) -> NDArray[np.int64]:
-        """Units of each SKU in bundles that have arrived and are not stored yet."""
+        """Units in bundles that have arrived and are not stored yet, per SKU, shape (K,)."""
         return self._world.incoming
 
     @property
     def active_pick_share(self) -> float:
-        """Share of active pick stations; at least one counts as active."""
+        """Number of active pick stations, at least 1, as a share of all pick stations."""
         return _active_share(self._world.pick_stations)
 
     @property
     def active_replenishment_share(self) -> float:
-        """Share of active replenishment stations; at least one counts as active."""
+        """Number of active replenishment stations, at least 1, as a share of all of them."""
         return _active_share(self._world.replenishment_stations)
 
 

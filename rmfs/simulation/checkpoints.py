@@ -22,9 +22,14 @@ class Checkpoints:
     Parameters
     ----------
     path
-        The file.
+        The checkpoint file; each checkpoint replaces the one before.
     every_s
         Simulated seconds between checkpoints.
+
+    Raises
+    ------
+    InputError
+        If `every_s` is not positive.
     """
 
     def __init__(self, path: Path, every_s: float) -> None:
@@ -36,7 +41,7 @@ class Checkpoints:
     def __call__(
         self, simulation: Kernel, progress: Callable[[float, float], None] | None = None
     ) -> None:
-        """Simulate to the end."""
+        """Simulate to the end, and save the simulation at each checkpoint."""
         number = int(simulation.now_s // self._every_s)
         while not simulation.ended:
             number += 1
@@ -54,12 +59,13 @@ def resumed(path: Path, simulation: K) -> K:
     Parameters
     ----------
     simulation
-        A run with the same inputs that has not started.
+        A simulation with the same inputs that has not started.
 
     Raises
     ------
     InputError
-        If there is no such file, or it is from another run or version of the code.
+        If there is no such file, it cannot be read, or it is from another run or version of the
+        code.
     """
     if not path.is_file():
         raise InputError(f"{path}: no checkpoint to go on from (is it of another folder or seed?)")

@@ -34,12 +34,12 @@ class PhaseConsult:
         self._deciding = deciding
 
     def serves(self, pod: int, station: int) -> bool:
-        """Ask PPS whether there is work for a pod."""
+        """Ask PPS whether a pod has work at a station."""
         pps: PodSelection[Any] = self._controllers[Problem.PPS]
         return pps.serves(pod, station)
 
     def pod_for(self, robot: Robot, station: int) -> int:
-        """Ask PPS for a pod."""
+        """Ask PPS for the pod that a robot should bring to a station; -1 for none."""
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
         target = self._world.work_stations[station]
         if isinstance(target, PickStation):
@@ -52,24 +52,24 @@ class PhaseConsult:
         )
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask PPS for the next station of a carried pod."""
+        """Ask PPS for the next station of the pod that a robot carries."""
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
         asked = (Problem.PPS, "next station", robot.index, tuple(stations))
         return self._number(asked, pps, lambda: pps.next_station(robot, stations))
 
     def place_for(self, robot: Robot) -> int:
-        """Ask PSA for a place."""
+        """Ask PSA for a storage place (waypoint) for the pod of a robot; -1 for none."""
         psa: PodStorageAssignment[Any] = self._controllers.consulted(Problem.PSA)
         asked = (Problem.PSA, "place", robot.index, ())
         return self._number(asked, psa, lambda: psa.place(robot))
 
     def may_move(self) -> bool:
-        """Whether repositioning may have a pod to move."""
+        """Whether the repositioning rule ever moves pods."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         return not rule.never
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask repositioning for a pod to move, unless it would not answer now."""
+        """Ask repositioning for a move; None if it has none or is not ready for this robot."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         if not rule.is_ready(robot):
             return None
@@ -100,7 +100,11 @@ class PhaseConsult:
 
 
 class OutsideConsult(PhaseConsult):
-    """As `PhaseConsult`, while some of these problems are decided outside."""
+    """Passes TA's questions to the outside if their problem is decided there.
+
+    All other questions are answered as by `PhaseConsult`. The methods that ask for a pod, station,
+    place or move raise `Awaits` if the outside must answer first.
+    """
 
     def __init__(
         self, world: World, controllers: ControllerSet, deciding: Deciding, outside: Outside
@@ -109,30 +113,30 @@ class OutsideConsult(PhaseConsult):
         self._outside = outside
 
     def pod_for(self, robot: Robot, station: int) -> int:
-        """Ask for a pod."""
+        """Ask for the pod that a robot should bring to a station; -1 for none."""
         picks = isinstance(self._world.stations[station], PickStation)
         kind = "pick pod" if picks else "replenishment pod"
         question = Question(Problem.PPS, kind, robot.index, (station,))
         return self._asked(question, lambda: super(OutsideConsult, self).pod_for(robot, station))
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask for the next station of a carried pod."""
+        """Ask for the next station of the pod that a robot carries."""
         question = Question(Problem.PPS, "next station", robot.index, tuple(stations))
         return self._asked(
             question, lambda: super(OutsideConsult, self).next_station(robot, stations)
         )
 
     def place_for(self, robot: Robot) -> int:
-        """Ask for a place."""
+        """Ask for a storage place (waypoint) for the pod of a robot; -1 for none."""
         question = Question(Problem.PSA, "place", robot.index)
         return self._asked(question, lambda: super(OutsideConsult, self).place_for(robot))
 
     def may_move(self) -> bool:
-        """Whether repositioning may have a pod to move; always true if it is decided outside."""
+        """Whether repositioning ever moves pods; always true if it is decided outside."""
         return Problem.REPOSITIONING in self._outside.problems or super().may_move()
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask for a pod to move, unless repositioning would not answer now."""
+        """Ask for a move; None if there is none or the rule is not ready for this robot."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         question = Question(Problem.REPOSITIONING, "move", robot.index)
         if not self._outside.knows(question) and not rule.is_ready(robot):

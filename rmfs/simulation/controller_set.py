@@ -60,7 +60,7 @@ class ControllerSet:
         self._connect()
 
     def __getitem__(self, problem: Problem) -> Any:
-        """Look up the controller of a problem."""
+        """Return the installed controller of a problem."""
         return self.installed[problem]
 
     def consulted(self, problem: Problem) -> Any:
@@ -72,7 +72,13 @@ class ControllerSet:
         return self._consulted[problem]
 
     def install(self, choice: Choice) -> None:
-        """Exchange the controller of a problem."""
+        """Create a controller and install it in place of the present one of its problem.
+
+        Raises
+        ------
+        InputError
+            If it is incompatible with the layout or the scenario; nothing has changed then.
+        """
         self._create(choice)
         self._connect()
 

@@ -40,7 +40,7 @@ class Deciding:
     Attributes
     ----------
     statistics
-        Statistics per problem whose controllers are asked.
+        Statistics by decision problem; path planning (PP) has none.
     """
 
     def __init__(
@@ -74,8 +74,19 @@ class Deciding:
     def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:
         """Apply decisions one by one, and measure the time spent on making them.
 
-        `answer` is the call whose answer was passed to the controller. If it arrives while the
-        controller that asked is still deciding, this call is nested.
+        Calls can be nested: an answer may arrive while the controller that asked still decides.
+
+        Parameters
+        ----------
+        given
+            The decisions, made one after another as they are taken from it.
+        answer
+            The call to an optimiser whose answer the decisions follow from, if any.
+
+        Raises
+        ------
+        RuleError
+            If a user's rule makes an impossible decision, or any rule returned None.
         """
         apply, controller = self._apply, self._controllers[problem]
         asks_optimisers = bool(controller.optimisers)
@@ -138,12 +149,6 @@ class Deciding:
     ) -> None:
         """Ask a rule that may be interrupted by questions to the outside, otherwise like `ask`.
 
-        Raises
-        ------
-        Awaits
-            If a question must be answered outside first. The rule is then in its state after its
-            last decision, and must be asked again.
-
         Parameters
         ----------
         decide
@@ -154,6 +159,12 @@ class Deciding:
             Saves and restores the state of the rule.
         answer
             The call whose answer is passed on.
+
+        Raises
+        ------
+        Awaits
+            If a question must be answered outside first. The rule is then in its state after its
+            last decision, and must be asked again.
         """
         controller = self._controllers[problem]
         which = -1 if answer is None else answer.number
@@ -218,7 +229,8 @@ class Deciding:
         Raises
         ------
         RuleError
-            States problem, rule, simulated time, answer, and why it is impossible.
+            If the answer is impossible; the message states the decision problem, rule, simulated
+            time, answer, and why it is impossible.
         """
         why = why_not(given, question, controller.view)
         if why:
@@ -240,21 +252,45 @@ class Deciding:
         call: Call | None = None,
         modelled: bool = True,
     ) -> None:
-        """Record that TA asked another controller; `modelled`: a choice that models make."""
+        """Record that TA asked another controller.
+
+        Parameters
+        ----------
+        wall_ns
+            Wall time of the call in nanoseconds; it is not counted as TA's.
+        decided
+            Whether the controller decided anything.
+        call
+            The call to an optimiser from whose answer the decision follows; None: the rule decided.
+        modelled
+            Whether optimisers can make this kind of choice; otherwise it does not count as a
+            decision that the rule made in an optimiser's place.
+        """
         self._nested_ns += wall_ns
         self.record(problem, wall_ns, int(decided), int(decided and call is None))
         if decided and controller.optimisers and (modelled or call is not None):
             self.decided(problem, call)
 
     def decided(self, problem: Problem, call: Call | None) -> None:
-        """Count a decision of a controller that asks optimisers, by solution or by rule."""
+        """Count a decision of a controller that asks optimisers: of `call`, or by its own rule."""
         if call is None:
             self._events.rule_decided(problem.value, self._world.now_s)
         else:
             call.count()
 
     def record(self, problem: Problem, wall_ns: int, count: int, by_rule: int) -> None:
-        """Record a call; decisions by a solution are counted with the question."""
+        """Record a call of a controller.
+
+        Parameters
+        ----------
+        wall_ns
+            Wall time of the call in nanoseconds.
+        count
+            Number of decisions made in it.
+        by_rule
+            Number of these that do not follow from a solution; the others are counted with the
+            question to the optimiser.
+        """
         now_s, statistics = self._world.now_s, self.statistics[problem]
         statistics.record(wall_ns, count, now_s)
         self._events.decision(statistics.problem, now_s, wall_ns / 1e9, by_rule)

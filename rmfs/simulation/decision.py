@@ -38,7 +38,7 @@ class Asking(Protocol):
 
     @property
     def deciding(self) -> Deciding:
-        """The statistics of decisions."""
+        """The part that records decisions."""
         ...
 
     @property
@@ -50,10 +50,10 @@ class Asking(Protocol):
 class Decision:
     """One question to the outside, with methods to answer it.
 
-    POA, ROA, RPS, SA, MM and TA are asked in turns: call `answer` with one decision after another,
-    of the kinds in `rmfs.control.decisions`, each applied at once, until `decline` ends the turn.
-    PPS, PSA and repositioning are asked by TA, one thing at a time: a pod, a station, a place, or a
-    `Move`.
+    POA, ROA, RPS, SA, MM, CA and TA are asked in turns: call `answer` with one decision after
+    another, of the kinds in `rmfs.control.decisions`, each applied immediately, until `decline`
+    ends the turn. PPS, PSA and repositioning are asked by TA, one thing at a time: a pod, a
+    station, a place, or a `Move`.
 
     Attributes
     ----------
@@ -80,23 +80,23 @@ class Decision:
 
     @property
     def now_s(self) -> float:
-        """Simulated time of the decision."""
+        """Simulated time of the decision, in s."""
         return self.view.now_s
 
     @property
     def robot(self) -> Robot | None:
-        """The robot that a question of TA concerns."""
+        """The robot that a question of TA concerns; None in a turn."""
         number = self._question.robot
         return None if number < 0 else self.view.robots[number]
 
     @property
     def stations(self) -> tuple[int, ...]:
-        """The station that needs a pod, or the possible next stations."""
+        """The station that needs a pod, or the possible next stations; empty in other questions."""
         return self._question.stations
 
     @property
     def is_open(self) -> bool:
-        """Whether it still needs an answer."""
+        """Whether the question still needs an answer."""
         return self._simulation.phase.outside.pending is self._question
 
     @property
@@ -121,8 +121,8 @@ class Decision:
         Raises
         ------
         ImpossibleError
-            If the answer is impossible; the message says why. Nothing has changed, and the question
-            remains open.
+            If the answer is impossible, in which case nothing has changed and the question remains
+            open, or the question has already been answered; the message says why.
         """
         self._refuse_answered()
         reason = why_not(given, self._question, self.view)
@@ -149,7 +149,8 @@ class Decision:
         Raises
         ------
         ImpossibleError
-            If TA asks for the next of several stations, of which one must be chosen.
+            If TA asks for the next of several stations, of which one must be chosen, or the
+            question has already been answered.
         """
         self._refuse_answered()
         if self.kind == "next station":
@@ -167,6 +168,8 @@ class Decision:
 
         Raises
         ------
+        ImpossibleError
+            If the question has already been answered.
         NotImplementedError
             If the rule would ask an optimiser.
         """

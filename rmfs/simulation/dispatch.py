@@ -60,7 +60,7 @@ class Dispatch:
     # --- decisions of TA ------------------------------------------------------------------------
 
     def start(self, decision: TaskDecision | Charge) -> None:
-        """Let a robot start a task decided by TA or CA."""
+        """Let a robot start a decided task."""
         self._begin(decision.task())
 
     def _begin(self, planned: Task) -> None:

@@ -1,4 +1,4 @@
-"""Disturbances of a run and their times: breakdowns, slow robots, late motions, ..."""
+"""Disturbances of a run: breakdowns, slow robots, closures, late motions, and failed chargers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.traffic import Traffic
 
 AGAIN_US = 1_000_000
-"""Delay before retrying to start or end a disturbance that cannot start or end now."""
+"""Delay in us before retrying to start or end a disturbance that cannot start or end now."""
 
 TRIES = 20
 """Number of waypoints tried when looking for one that can be closed."""
@@ -39,16 +39,16 @@ _LATE_MOTIONS = 4
 
 
 class Disturbance(NamedTuple):
-    """A disturbance.
+    """A disturbance with a start and an end; late motions are not recorded as disturbances.
 
     Attributes
     ----------
     kind
         `breakdown`, `slow`, `closure`, `charger` or `elevator`.
     element
-        Robot, waypoint, station or elevator.
+        Number of the robot, waypoint, station or elevator, according to the kind.
     from_us, to_us
-        Start and end.
+        Start and end in microseconds.
     """
 
     kind: str
@@ -68,12 +68,14 @@ class DisturbanceSource:
     Attributes
     ----------
     begun
-        Disturbances so far, by start; the end of those in progress is far in the future.
+        Disturbances so far, in the order in which they were recorded. `to_us` is `FOR_EVER_US`
+        while the end is not known; a breakdown is recorded with its start, which may be in the
+        near future, and its end.
 
     Raises
     ------
     InputError
-        If an elevator does not exist.
+        If an elevator does not exist, or chargers are to fail and the layout has none.
     """
 
     def __init__(
@@ -112,7 +114,10 @@ class DisturbanceSource:
         return [(one.element, one.from_us, one.to_us, share) for one in slow]
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return the number of disturbances in a time interval, and their total duration."""
+        """Return the number of disturbances in a time interval, and their total time in it, in s.
+
+        Disturbances that overlap each add their full time.
+        """
         start_us, end_us = round(start_s * 1e6), round(end_s * 1e6)
         parts = [
             min(one.to_us, end_us) - max(one.from_us, start_us)
@@ -122,7 +127,7 @@ class DisturbanceSource:
         return len(parts), sum(parts) / 1e6
 
     def begin(self) -> None:
-        """Schedule the first disturbance of each kind."""
+        """Schedule the first disturbance of each kind, elevator outages, and late motions."""
         for kind, given in enumerate(self._given_by_kind()):
             if given is not None:
                 self._repeat(kind)
@@ -138,7 +143,10 @@ class DisturbanceSource:
             self._agenda.after(round(begin_s * 1e6), stop)
 
     def redraw(self) -> None:
-        """Redraw the next disturbance of each kind; those in progress continue."""
+        """Redraw the next disturbance of each kind, and late motions.
+
+        Disturbances in progress continue, and outages of elevators keep their times.
+        """
         for kind, serial in list(self._next.items()):
             self._agenda.cancel(serial)
             self._repeat(kind)

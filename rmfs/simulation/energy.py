@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def model_of(given: Energy) -> list[float]:
-    """Return the parameters of a scenario in the order expected by traffic."""
+    """Return the parameters of a scenario in the order that `Traffic.count_energy` expects."""
     return [
         given.robot_kg,
         given.rolling_resistance,
@@ -36,7 +36,7 @@ class PodMasses(Observer):
     Parameters
     ----------
     given
-        The masses.
+        The scenario's energy parameters, with the masses of pods and goods.
     fleet
         Traffic, which is notified of each change.
     """
@@ -47,7 +47,7 @@ class PodMasses(Observer):
         self._fleet = fleet
 
     def all_kg(self) -> list[float]:
-        """Mass of every pod, shape (P,)."""
+        """Return the mass of every pod with its contents, in kg, shape (P,)."""
         masses: list[float] = (self._empty_kg + self._kg_per_space * self._used).tolist()
         return masses
 

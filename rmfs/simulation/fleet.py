@@ -9,9 +9,9 @@ class Fleet(Protocol):
     """Drives robots (`rmfs.traffic.Traffic`)."""
 
     def command(self, robot: int, program: list[tuple[int, int]], /) -> None:
-        """Give a robot its next steps, as pairs of a kind of step and its argument."""
+        """Give a robot its next steps, as pairs of a `Step` and its argument."""
         ...
 
     def rest_waypoint(self, robot: int) -> int:
-        """Return where a robot stands, or where its plan ends."""
+        """Return the waypoint where a robot stands, or where its plan ends."""
         ...

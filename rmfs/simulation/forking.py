@@ -33,7 +33,7 @@ _STREAMS: ContextVar[tuple[int, tuple[int, ...]]] = ContextVar("_STREAMS")
 
 
 def fork(simulation: K) -> K:
-    """Copy a simulation; see `Kernel.fork`."""
+    """Copy a simulation; see `Simulation.fork`."""
     original, copied = _never_changing(simulation), _never_changing(simulation)
     fleet = original.index(simulation.traffic)
     copied[fleet] = simulation.traffic.fork()

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""A rule is idle if it decided nothing in this last share of the run ..."""
+"""Share of the run, at its end, in which a rule that is reported has decided nothing."""
 LEAST_S = 300.0
-"""... and in at least this much simulated time."""
+"""Shortest simulated time without a decision, in s, for which a rule is reported."""
 
 
 class IdleRuleWarning(UserWarning):
@@ -30,14 +30,19 @@ def idle_rules(
     end_s: float,
     outside: frozenset[Problem] = frozenset(),
 ) -> list[str]:
-    """Describe rules of POA, RPS, ROA and TA that decided nothing for long while work waited.
+    """Describe rules of POA, RPS, ROA and TA that have decided nothing for long while work waits.
 
     Parameters
     ----------
     end_s
-        Simulated time from the first event to the end, s.
+        End of the run, in simulated seconds since its start.
     outside
-        Problems decided outside, whose rules are exempt.
+        Decision problems decided outside, whose rules are exempt.
+
+    Returns
+    -------
+    list of str
+        One line per rule; empty if there is none.
     """
     found = []
     for problem in (Problem.POA, Problem.RPS, Problem.ROA, Problem.TA):

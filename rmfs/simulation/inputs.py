@@ -50,7 +50,8 @@ def load_inputs(
 ) -> Inputs:
     """Load the inputs of a run; see `rmfs.simulate`.
 
-    Values that a scenario of RAWSim-O implies for the layout come first; the given overrides win.
+    Values that a scenario of RAWSim-O implies for the layout are applied first, so that the given
+    overrides win.
 
     Raises
     ------
@@ -85,7 +86,13 @@ def load_inputs(
 
 
 def as_overrides(settings: Mapping[str, Any]) -> Overrides:
-    """Return parameters by dotted key as (path, value) pairs; classes become references."""
+    """Return parameters by dotted key as (path, value) pairs; classes become references.
+
+    Raises
+    ------
+    InputError
+        If `settings` is not a mapping, or a key is not a string.
+    """
     if not isinstance(settings, Mapping):
         raise InputError(
             'set: must be a mapping of keys to values, such as {"layout.robots": 16} '
@@ -101,7 +108,7 @@ def as_overrides(settings: Mapping[str, Any]) -> Overrides:
 
 
 def name_of(given: Any) -> str:
-    """Return the name of an input as specified by the user."""
+    """Return the name of an input: of a path without folder and suffix, of an object its `name`."""
     return Path(given).stem if isinstance(given, str | Path) else str(given.name)
 
 

@@ -79,7 +79,7 @@ class Kernel(Loop):
     world, view
         The state of the warehouse, and the read-only view of it that controllers get.
     interventions
-        Controllers exchanged interactively, with the times (s).
+        For each interactive exchange of a controller, its time (s) and the new choice.
 
     Raises
     ------
@@ -243,7 +243,7 @@ class Kernel(Loop):
         Parameters
         ----------
         watch
-            Observer of the consequences.
+            Observer that is notified of the consequences.
         """
         *inside, triggers = self.events.observers
         kept = [one for one in inside if type(one) is not Observer]
@@ -253,7 +253,7 @@ class Kernel(Loop):
         self._unsettled = True
 
     def redraw(self) -> None:
-        """Redraw the known future, after all random streams have been replaced.
+        """Redraw arrivals and disturbances to come, after all random streams have been replaced.
 
         Raises
         ------

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class LateBinding(Observer):
-    """Adds new work to tasks after changes: orders and bundles assigned, pods lifted.
+    """Adds new work to tasks when orders are assigned or queued, bundles assigned, or pods lifted.
 
     A task is extended only while its pod is carried and at least one of its requests is left; a pod
     without requests is considered when its robot asks for a task. If several pods qualify, the one

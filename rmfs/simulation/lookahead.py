@@ -30,7 +30,7 @@ class Trial(Protocol):
         ...
 
     def run_until(self, time_s: float) -> Any:
-        """Continue the run up to a time."""
+        """Continue the run up to a time in s."""
         ...
 
     @property
@@ -39,7 +39,7 @@ class Trial(Protocol):
         ...
 
     def observed(self) -> Observed:
-        """The parts of the run that observers may see."""
+        """Return the parts of the run that observers may see."""
         ...
 
 
@@ -47,7 +47,7 @@ class Copies(Protocol):
     """Creates copies of a saved state of a run."""
 
     def __call__(self, path: tuple[int, ...]) -> tuple[Trial, Any]:
-        """Return a copy with the random streams of this path, and its copy of the companion."""
+        """Return a copy with the random streams of this path, and one of what was saved with it."""
         ...
 
 
@@ -91,7 +91,7 @@ class ForkedTrials:
         self._goal = goal
 
     def __call__(self, which: int, sample: int) -> Tried:
-        """Try out one of the decisions in one of the futures."""
+        """Try out decision number `which` in future number `sample`."""
         trial, (decisions, base) = self._copies((self._number, sample))
         earnings = Earnings(self._goal, trial.world.now_s, self._horizon_s)
         earnings.run_started(trial.observed())
@@ -125,21 +125,27 @@ class Earnings(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """Count the unit, discounted by time."""
+        """Add the worth of the unit, times the share of the horizon that is left."""
         self._value += self._goal.units * self._left(time_s)
 
     def order_completed(self, order: Order) -> None:
-        """Count the order, discounted by time, and its overdue time."""
+        """Add the worth of the order, times the share of the horizon that is left.
+
+        The cost of its overdue time within the horizon is subtracted.
+        """
         goal = self._goal
         self._value += goal.orders * self._left(order.completed_s)
         self._value -= goal.overdue_s * self._overdue_s(order, order.completed_s)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Count the units, discounted by time."""
+        """Add the worth of the units, times the share of the horizon that is left."""
         self._value += self._goal.units_stored * bundle.units * self._left(bundle.stored_s)
 
     def value(self, world: World) -> float:
-        """Return the value; orders that are still overdue count up to now."""
+        """Return the value, less the cost of distance and of the time for which orders are overdue.
+
+        An order that is not completed is overdue up to now.
+        """
         goal, value = self._goal, self._value
         if goal.overdue_s:
             still = list(world.orders)

@@ -27,34 +27,34 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
     Limit = Callable[[int], int]
-    """Given the present time in us, returns the time up to which to simulate; it may block
+    """Given the present time in us, returns the time in us up to which to simulate; may block
     first."""
 
 SAMPLE_S = 60.0
-"""Time between two samples."""
+"""Simulated time between two samples, in s."""
 
 STALL_S = 3600.0
-"""A run is given up if nothing has moved for this long while robots wait for a path."""
+"""A run is given up if nothing has moved for this long, in s, while robots wait for a path."""
 
 
 class StalledError(RuntimeError):
-    """No robot can move any more; the message lists every robot."""
+    """Nothing has moved for `STALL_S` while robots wait for a path; the message lists them all."""
 
 
 class Loop:
     """Repeatedly advances traffic, calls what is due, and lets controllers decide.
 
-    Everything at an instant is handled before the controllers are asked. Interrupting a run does
-    not change its results.
+    Everything at an instant is handled before the controllers are asked. A run that is simulated
+    in several calls has the same results as one simulated in one call.
 
     Attributes
     ----------
     agenda
         The current time, and the future events.
     warmup_s, end_s
-        Start of the measured time, and end of the run.
+        Start of the measured time, and end of the run, in s.
     wall_s
-        Wall time spent on simulating so far.
+        Wall time spent on simulating so far, in s.
     instants
         Number of instants simulated so far.
     """
@@ -87,7 +87,7 @@ class Loop:
 
     @property
     def now_s(self) -> float:
-        """Current simulated time."""
+        """Current simulated time in s."""
         return self.world.now_s
 
     @property
@@ -101,14 +101,16 @@ class Loop:
         Parameters
         ----------
         progress
-            Called about a hundred times with the simulated time so far and in total.
+            Called about a hundred times with the simulated time so far and in total, in s.
 
         Raises
         ------
         RuntimeError
             If a decision must be made outside; use `step` instead.
         StalledError
-            If no robot can move any more (only possible in a layout that is not well-formed).
+            If no robot moves any more (only possible in a layout that is not well-formed).
+        RuleError
+            If a user's controller decides something impossible.
         OptimiserError
             If an optimiser fails and the pacing is a reproducible one.
         ReplayError
@@ -126,7 +128,8 @@ class Loop:
         Parameters
         ----------
         limit
-            Called before every instant, for example to watch a run.
+            Called before every instant with the present time in us; returns the time up to which to
+            simulate, and may wait first, for example for a page that shows the run.
         """
         try:
             with _present_objects_uncollected():
@@ -140,11 +143,13 @@ class Loop:
             self.optimisers.end()
 
     def run_until(self, time_s: float) -> Decision | None:
-        """Simulate up to a time, including everything at that time.
+        """Simulate up to a time, including everything at that time, but not beyond the end.
 
         Returns
         -------
-        The first decision to be made outside, if there is one before that time.
+        Decision or None
+            The first decision to be made outside up to then, where the simulation stops; None if
+            there is none.
         """
         return self._go_on(min(us_at(time_s), self._end_us))
 
@@ -153,8 +158,9 @@ class Loop:
 
         Returns
         -------
-        The decision, which must be answered before the next step; until then the same one is
-        returned. None if the run has ended.
+        Decision or None
+            The decision, which must be answered before the next step; until then it is returned
+            again. None if the run has ended.
         """
         return self._go_on(self._end_us)
 
@@ -226,7 +232,7 @@ class Loop:
 
     @property
     def decision(self) -> Decision | None:
-        """The decision waiting to be made outside, if there is one."""
+        """The decision waiting to be made outside; None if there is none."""
         question = self.phase.outside.pending
         return None if question is None else Decision(question, self)
 

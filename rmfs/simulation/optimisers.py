@@ -68,7 +68,7 @@ class OptimiserGateway:
         self._pacing.begin(dict.fromkeys(modules), self._give)
 
     def ask(self, problem: Problem, controller: Controller[Any], ask: Ask[Any]) -> None:
-        """Submit a question; an answer without delay is applied before this returns."""
+        """Submit a question; if its answer takes no simulated time, apply it before returning."""
         now_us = self._agenda.now_us
         state = digest((now_us, str(problem), _tracks(self._world), ask.question))
         call = Call(self._asked, problem, controller, ask, now_us, state)
@@ -82,7 +82,7 @@ class OptimiserGateway:
             self._asking = False
 
     def limit_us(self, now_us: int) -> int:
-        """Return the latest time that may be simulated now."""
+        """Return the latest time that may be simulated now, in us; may wait for a solver first."""
         return self._pacing.limit_us(now_us)
 
     def end(self) -> None:

@@ -80,17 +80,17 @@ class Outside:
     pending
         The question waiting for an answer.
     given
-        Answers to the questions of the TA rule's current attempt, with the questions.
+        Questions of the TA rule's current attempt, each with its answer.
     taken
-        Number of them that the attempt has used.
+        Number of these answers that the attempt has used.
     decided
         Number of decisions in the current turn so far.
     doing
-        A decision of TA that is applied when PPS, PSA or repositioning have been answered.
+        A decision of TA that is applied when the questions that it raises have been answered.
     refused
         Decisions of the current turn that failed because no pod or place was found.
     advisor, advised
-        The rule that gives advice, and its last advice.
+        The decisions that the installed rule would make in the current turn, and its last advice.
     """
 
     problems: frozenset[Problem] = frozenset()
@@ -117,7 +117,7 @@ class Outside:
         self.taken = 0
 
     def begin_attempt(self) -> None:
-        """Start an attempt of a TA rule, or continue after a decision of its own was applied."""
+        """Forget all answers, as a TA rule is asked anew or one of its decisions was applied."""
         if self.given:
             self.given.clear()
         self.taken = 0

@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from rmfs.scenario import OrderContent, Scenario, SkuSet
 
 PAST_ORDERS = 5000
-"""Number of past orders."""
+"""Number of past orders that are drawn."""
 
 _PAST = (1000,)  # below the stream of contents: far from the numbers of orders in the run
 _PLENTY = 2**40
 
 
 def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderContent]:
-    """Draw orders as in the scenario, assuming that every SKU is in stock.
+    """Draw `PAST_ORDERS` orders as in the scenario, assuming that every SKU is in stock.
 
     Parameters
     ----------

@@ -43,14 +43,14 @@ class DecisionPhase:
     The order is: answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding, PPS, PSA,
     CA, TA. Anything that a step makes due is done before later steps. PPS, PSA and repositioning
     decide when TA asks them; the steps of PPS and PSA are only for questions to optimisers. TA is
-    also asked when repositioning requests it.
+    also asked at the times that the controller of repositioning specifies.
 
     Attributes
     ----------
     outside
         The problems decided outside, and what is pending.
     choices
-        The currently installed controllers.
+        The currently installed controllers, by decision problem.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class DecisionPhase:
         self._steps = self._what_is_done()
 
     def exchange(self, choice: Choice) -> None:
-        """Install another controller for a problem; it is asked in the phase of this instant.
+        """Install another controller for a problem, which is then asked at this instant.
 
         Commitments of the previous controller are part of the world and remain: bundles on pods and
         at stations, orders and robots at work. What only the previous controller could continue is
@@ -250,7 +250,7 @@ class DecisionPhase:
             self._dispatch.start_prepared(robot, self._consult)
 
     def prepare(self, decision: say.Prepare, call: Call | None) -> None:
-        """Store tasks for later, or start the first one if the robot is free."""
+        """Store tasks for later; if the robot is free, start the first one that is possible."""
         robot = decision.robot
         rule = self._controllers[Problem.TA]
         self._dispatch.prepare(decision, call)
@@ -322,7 +322,8 @@ class DecisionPhase:
         Raises
         ------
         Awaits
-            If one of these is decided outside as well; the decision is applied when it is answered.
+            If one of these is decided outside as well; the decision is applied once that question
+            has been answered.
         """
         self.outside.doing = decision
         self.outside.begin_attempt()
@@ -350,14 +351,14 @@ class DecisionPhase:
         outside.begin_attempt()
 
     def advice(self, problem: Problem) -> Iterator[Any]:
-        """Ask the installed rule for the decisions of a turn."""
+        """Return the decisions that the installed rule would make in a turn; none is applied."""
         rule = self._controllers[problem]
         inside = PhaseConsult(self._world, self._controllers, self._deciding)
         decisions: Iterable[Any] = rule.decide(inside) if problem is Problem.TA else rule.decide()
         return iter(decisions)
 
     def advice_to(self, question: Question) -> Any:
-        """Ask the installed rule a question of TA."""
+        """Return the installed rule's answer to a question of TA; it is not carried out."""
         rule = self._controllers[question.problem]
         robot = self._world.robots[question.robot]
         found = self._say(rule, robot, question)

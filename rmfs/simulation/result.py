@@ -59,9 +59,9 @@ class Run(Results):
     pacing, pacing_settings
         The pacing as specified by the user, and with all its parameters.
     warmup_s, duration_s, end_s
-        Length of the warm-up, length of the measured time, and both together.
+        Length of the warm-up, length of the measured time, and both together, in s.
     wall_s
-        Wall time of the simulation, without loading.
+        Wall time of the simulation in s, without loading.
     world, traffic
         The final state of world and traffic.
     statistics
@@ -75,7 +75,8 @@ class Run(Results):
     events
         The recorded events; only if the trace was recorded.
     interventions
-        Controllers exchanged interactively, with the times (s); `names` includes them.
+        For each interactive exchange of a controller, its time (s) and the new choice; `names`
+        includes them.
     idle_rules
         Descriptions of rules that decided nothing for a long time although work waited.
     """
@@ -114,12 +115,12 @@ class Run(Results):
 
     @property
     def series(self) -> pd.DataFrame:
-        """Measures per minute."""
+        """The table `series`: measures per minute."""
         return self.table("series")
 
     @property
     def decisions(self) -> pd.DataFrame:
-        """Measures per decision problem."""
+        """The table `decisions`: calls of controllers, and questions to optimisers."""
         return self.table("decisions")
 
     def table(self, name: str) -> pd.DataFrame:
@@ -133,7 +134,13 @@ class Run(Results):
         return self._ended.tables[name]
 
     def check(self) -> CheckReport:
-        """Verify with the independent checker that the motion is safe; fills `collisions`."""
+        """Verify with the independent checker that the motion is safe; fills `collisions`.
+
+        Raises
+        ------
+        InputError
+            If the trace was not recorded.
+        """
         until_us = round(self.end_s * 1e6)
         slow = [Slow(*one) for one in self.slow_robots]
         self._require_trace()

@@ -90,7 +90,7 @@ def simulate(
     streams
         Records all arriving orders and bundles, for `rmfs.scenario.write_stream`.
     progress
-        Called about a hundred times with the simulated time so far and in total.
+        Called about a hundred times with the simulated time so far and in total, in s.
     remark
         Called before the run with the input (`layout`, ...) and the text of each note on a file of
         RAWSim-O: what is left out or done differently.
@@ -105,6 +105,10 @@ def simulate(
     ------
     InputError
         If an argument is wrong; the message names it and the valid values.
+    RuleError
+        If a user's controller decides something impossible.
+    StalledError, OptimiserError, ReplayError
+        As for `Simulation.run`.
     """
     simulation = Simulation(
         layout,
@@ -130,7 +134,7 @@ def simulate(
 
 
 class Simulation(Kernel):
-    """A run that is simulated step by step, with the same results as `simulate`.
+    """A run that can be simulated in steps, with the same results as by `simulate`.
 
     Parameters
     ----------
@@ -140,7 +144,7 @@ streams, remark, allow_not_well_formed, traffic_maker
     outside
         Decision problems decided outside through `step`, such as `["poa", "pps"]`.
     measured
-        Whether to measure the run; without measuring it is slightly faster and has no result.
+        Whether to measure the run. If not, it is slightly faster and has no result.
 
     Raises
     ------
@@ -149,7 +153,7 @@ streams, remark, allow_not_well_formed, traffic_maker
     """
 
     checks_layout: ClassVar[bool] = True
-    """Whether to check the layout before the run."""
+    """Whether layouts are checked before the run; a subclass may switch this off."""
 
     def __init__(
         self,
@@ -254,6 +258,8 @@ streams, remark, allow_not_well_formed, traffic_maker
 
     def result(self) -> Run:
         """Return the finished run with its footprint, tables and trace.
+
+        Issues an `IdleRuleWarning` for each rule that decided nothing for long while work waited.
 
         Raises
         ------

@@ -24,7 +24,7 @@ K = TypeVar("K", bound="Kernel")
 
 
 def save(simulation: Kernel, path: Path) -> None:
-    """Save a simulation; see `Kernel.save`."""
+    """Save a simulation to a file; see `Simulation.save`."""
     stream = io.BytesIO()
     ArrayPickler(stream).dump(simulation)
     header = {
@@ -39,7 +39,7 @@ def save(simulation: Kernel, path: Path) -> None:
 
 
 def load(kind: type[K], path: Path) -> K:
-    """Load a simulation; see `Kernel.load`."""
+    """Load a simulation, which must be of class `kind`, from a file; see `Simulation.load`."""
     try:
         with path.open("rb") as file:
             header, content = _header(file.readline(), path), file.read()
@@ -65,10 +65,13 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
     Raises
     ------
     InputError
-        If the inputs differ; the message says where.
+        If the inputs differ, in which case the message names them, or the file cannot be read.
     """
-    with path.open("rb") as file:
-        header = _header(file.readline(), path)
+    try:
+        with path.open("rb") as file:
+            header = _header(file.readline(), path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
     now = inputs_of(simulation)
     other = [name for name in now if header["inputs"].get(name) != now[name]]
     if other:
@@ -76,7 +79,7 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
-    """Return hashes of the inputs of a simulation."""
+    """Return what identifies the inputs of a simulation, by name: their hashes, and the seed."""
     return {
         "layout": digest(simulation.layout),
         "scenario": digest(simulation.scenario.model_dump(mode="json")),
@@ -93,4 +96,6 @@ def _header(line: bytes, path: Path) -> dict[str, Any]:
         header = None
     if not isinstance(header, dict) or header.get("format") != FORMAT:
         raise InputError(f"{path}: no checkpoint ({FORMAT})")
+    if not isinstance(header.get("code"), str) or not isinstance(header.get("inputs"), dict):
+        raise InputError(f"{path}: damaged (its header is not complete)")
     return header

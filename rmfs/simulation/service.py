@@ -39,7 +39,7 @@ class Outlet(Protocol):
     """Destination of orders from pick stations (`rmfs.simulation.packing`)."""
 
     def takes(self, order: Order) -> bool:
-        """Whether an order may leave its station; if not, `hand_on_held` is called when it may."""
+        """Whether an order may leave its station; if not, `hand_on_held` is called once it may."""
         ...
 
     def released(self, order: Order, *, last: bool, by_hand: bool = False) -> None:
@@ -55,11 +55,11 @@ class Hands(Protocol):
         ...
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Choose which unit of a task is picked next; None: the first."""
+        """Return the pick of a task that comes next; None for the first of its list."""
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
-        """Start a unit; it occupies station and robot for these times, those of the layout."""
+        """Start a unit and return how it is handled; the layout's times in s are given."""
         ...
 
 
@@ -245,7 +245,7 @@ class VisitService:
     parameters
         Parameters of the kind.
     world
-        Read-only; the effects of a visit must be stored in the station.
+        The world, read-only; the effects of a visit must be stored in the station.
     """
 
     def __init__(
@@ -264,7 +264,7 @@ class VisitService:
         self.world = world
 
     def seconds(self, task: VisitTask) -> float:
-        """Return how long the pod of a task that has reached the head stays."""
+        """Return how long the pod of a task stays, in s, now that it has reached the station."""
         raise NotImplementedError
 
     def done(self, task: VisitTask) -> None:

@@ -21,15 +21,16 @@ if TYPE_CHECKING:
 class ShortOrders(Observer):
     """Checks each order in the backlog after a given waiting time, and periodically after that.
 
-    An order cannot have units that are out of stock or needed by orders at stations. An order that
-    is in the pool of a station, or has been split, is already being served and is not changed.
+    Only units that are in stock and not needed by orders at stations count as available to it. If
+    they do not suffice, the order is cut to them or cancelled, by the policy. An order that is in
+    the pool of a station, or has been split, is already being served and is not changed.
 
     Parameters
     ----------
     given
         Parameters, with a policy other than waiting.
     changed
-        Called when an order has left the backlog.
+        Called when an order has been cancelled.
     """
 
     def __init__(
@@ -82,7 +83,7 @@ def short_orders(
     events: Events,
     changed: Callable[[], None],
 ) -> list[Observer]:
-    """Return the observer that checks orders; None if they just wait."""
+    """Return a list with the observer that checks orders; empty if short orders just wait."""
     if given.policy == "wait":
         return []
     return [ShortOrders(given, agenda=agenda, world=world, events=events, changed=changed)]

@@ -10,7 +10,7 @@ import numpy as np
 
 @dataclass(slots=True)
 class DecisionStatistics:
-    """Calls of the controllers of one problem.
+    """Calls of the controllers of one decision problem, since the warm-up or the start.
 
     Attributes
     ----------
@@ -19,11 +19,11 @@ class DecisionStatistics:
     name
         The currently installed rule.
     decisions
-        Decisions made in all calls.
+        Number of decisions made in all calls.
     last_s
-        Simulated time of the last decision; -1 for never.
+        Simulated time of the last decision in s, also of the warm-up; -1 if there was none.
     wall_ns
-        Wall time of each call, excluding the time of other controllers that it consulted.
+        Wall time of each call in ns, excluding the time of other controllers that it consulted.
     """
 
     problem: str
@@ -39,21 +39,21 @@ class DecisionStatistics:
 
     @property
     def wall_s(self) -> float:
-        """Total wall time of all calls."""
+        """Total wall time of all calls, in s."""
         return sum(self.wall_ns) / 1e9
 
     def wall_quantile_s(self, share: float) -> float:
-        """Return the quantile of the wall time of calls; nan without calls."""
+        """Return a quantile (`share`: 0 to 1) of the wall time of calls in s; nan without calls."""
         return float(np.quantile(self.wall_ns, share)) / 1e9 if self.wall_ns else float("nan")
 
     def record(self, wall_ns: int, decisions: int, now_s: float) -> None:
-        """Add one call."""
+        """Add one call, with its wall time in ns and its number of decisions."""
         if decisions:
             self.last_s = now_s
         self.wall_ns.append(wall_ns)
         self.decisions += decisions
 
     def reset(self) -> None:
-        """Reset the statistics (end of the warm-up)."""
+        """Forget all calls, at the end of the warm-up; `last_s` is kept."""
         self.decisions = 0
         self.wall_ns = array("q")

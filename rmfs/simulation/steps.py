@@ -26,7 +26,7 @@ PROBLEM_OF: dict[int, Problem] = {
     **dict(enumerate(AHEAD, start=LATE_BINDING + 1)),
     CHARGES: Problem.CA,
 }
-"""The problem whose controller is asked in a step."""
+"""The decision problem whose controller is asked in each of these steps."""
 
 STEP_OF: dict[Problem, int] = {
     **{problem: step for step, problem in PROBLEM_OF.items()},
@@ -34,7 +34,7 @@ STEP_OF: dict[Problem, int] = {
     Problem.TA: TASKS,
     Problem.REPOSITIONING: TASKS,
 }
-"""The step in which a controller is asked; all except PP."""
+"""The step in which the controller of each decision problem is asked; PP has none."""
 
 _ARRIVALS_AFTER = frozenset(
     {
@@ -58,7 +58,7 @@ class Due:
     bits
         Bit k is set if step k is due.
     storage_version
-        Version of pods and places that the due controllers know.
+        Version of `world.storage` of which the controllers were last notified.
     """
 
     def __init__(self, world: World, controllers: ControllerSet) -> None:
@@ -70,7 +70,7 @@ class Due:
         self.connect()
 
     def connect(self) -> None:
-        """Determine which controllers are asked after which trigger."""
+        """Determine which steps become due after each trigger, given the installed controllers."""
         self._masks = []
         asked = set(STEP_OF)
         if self._world.batteries is None:
@@ -84,13 +84,13 @@ class Due:
             self._masks.append(mask)
 
     def signal(self, trigger: Trigger, subject: Any = None) -> None:
-        """Process an event: the controllers concerned are asked in the phase of this instant."""
+        """Process a trigger: make its steps due at this instant, and call its listeners."""
         self.bits |= self._masks[trigger]
         for listener in self._controllers.listeners[trigger]:
             listener(trigger, subject)
 
     def want(self, problem: Problem) -> None:
-        """Schedule a call of a controller."""
+        """Schedule a call of a problem's controller at this instant."""
         self.bits |= 1 << STEP_OF[problem]
 
     def want_arrivals(self) -> None:

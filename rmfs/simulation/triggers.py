@@ -63,7 +63,7 @@ class Triggers(Observer):
         self._signal(Trigger.BUNDLE_PROMISED, bundle)
 
     def bundles_released(self, pod: int) -> None:
-        """Signal that the choice of a bundle's pod was released."""
+        """Signal that the bundles promised to a pod were released."""
         self._signal(Trigger.BUNDLE_RELEASED, pod)
 
     def bundle_sent(self, bundle: Bundle) -> None:

@@ -66,7 +66,7 @@ class VisitController(Observer, Generic[S]):
 
 
 class Visits:
-    """The controllers of all kinds of station in a layout, whose decisions it applies."""
+    """Asks the controllers of other kinds of station in a layout, and applies their decisions."""
 
     def __init__(self, world: World, view: View, dispatch: Dispatch, seed: int) -> None:
         self._world, self._view, self._dispatch = world, view, dispatch
@@ -79,7 +79,13 @@ class Visits:
                 self.controllers.append(controller(kind, own, view, seed))
 
     def give(self) -> None:
-        """Assign visits that are due to robots that need a task."""
+        """Ask the controllers about each robot that needs a task, and apply their decisions.
+
+        Raises
+        ------
+        ValueError
+            If a decision is impossible.
+        """
         for robot in list(self._world.asking.values()):
             for controller in self.controllers:
                 visit = controller.visit_for(robot)

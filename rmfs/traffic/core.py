@@ -76,14 +76,14 @@ def build(layout: Layout, options: Options) -> Core:
 
 
 def fork(core: Core, options: Options, memo: dict[int, Any]) -> tuple[Core, Options]:
-    """Copy a core during a run; a planner written in Python is deep-copied."""
+    """Return a copy of a core in its state, and its options; a planner in Python is deep-copied."""
     code = copy.deepcopy(options.planner.code, memo)
     options = options._replace(planner=options.planner._replace(code=code))
     return core.fork(_conversation(options.planner)), options
 
 
 def to_bytes(core: Core, options: Options) -> bytes:
-    """Save a core: a line of JSON, the pickled planner if it is in Python, and the state."""
+    """Return a core as bytes: a line of JSON, the planner, pickled, if in Python, and the state."""
     planner = options.planner
     code = b"" if planner.code is None else pickle.dumps(planner.code)
     head = {
@@ -98,7 +98,7 @@ def to_bytes(core: Core, options: Options) -> bytes:
 
 
 def from_bytes(layout: Layout, saved: bytes) -> tuple[Core, Options]:
-    """Build a core from bytes saved by `to_bytes`.
+    """Return the core saved by `to_bytes`, and its options.
 
     Raises
     ------

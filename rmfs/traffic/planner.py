@@ -56,7 +56,7 @@ class Agent(NamedTuple):
     heading_rad
         Its heading there.
     ready_us
-        When it arrives there.
+        Time in us at which it arrives there.
     goal
         Destination waypoint.
     loaded
@@ -64,7 +64,7 @@ class Agent(NamedTuple):
     needs_plan
         Whether it has no path, or its path was refused.
     to_go_us
-        Unhindered time to the goal; None if there is no path.
+        Unhindered time to the goal in us; None if there is no path.
     """
 
     robot: int
@@ -113,5 +113,5 @@ class Conversation:
     def begin(
         self, now_us: int, agents: list[tuple[Any, ...]]
     ) -> Generator[Question, Any, list[Way | None]]:
-        """Start a call."""
+        """Start a call of the planner; its questions and answers pass unchanged."""
         return self._planner.plan(now_us, [Agent(*agent) for agent in agents])

@@ -20,7 +20,7 @@ class Readings:
     _core: Core
 
     def motion(self) -> dict[str, NDArray[Any]]:
-        """Totals per robot since the last reset, up to now, each of shape (R,).
+        """Return totals per robot since the last reset, up to now, each of shape (R,).
 
         `distance_m` and `loaded_distance_m`. The times `moving_s`, `turning_s`, `waiting_s`
         (standing on the way), `served_s` (standing at a station), `idle_s`, `transfer_s` (lifting,
@@ -30,7 +30,7 @@ class Readings:
         return self._core.motion()
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Energy per robot, up to now, each of shape (R,).
+        """Return the energy of each robot, up to now, in columns of shape (R,).
 
         Since the last reset: `drive_j`, `turn_j`, `lift_j`, `standby_j`, `recuperated_j`,
         `charged_j` and `charging_s`; `used_j` is the sum of the first four minus `recuperated_j`.
@@ -45,11 +45,11 @@ class Readings:
         return self._core.energy()
 
     def used_j(self, robot: int) -> float:
-        """Energy drawn by a robot since time zero, in J."""
+        """Return the energy drawn by a robot since time zero, in J."""
         return self._core.used(robot)
 
     def level_j(self, robot: int) -> float:
-        """Energy in the battery of a robot, in J."""
+        """Return the energy in the battery of a robot, in J."""
         return self._core.level(robot)
 
     def heat(self) -> dict[str, NDArray[Any]]:
@@ -68,7 +68,7 @@ class Readings:
         return {"visits": visits, "waiting_s": waiting_s, **counted}
 
     def edges(self) -> dict[str, NDArray[Any]]:
-        """Edges and elevator rides used since the last reset, by their end points.
+        """Return the edges and elevator rides used since the last reset, by their end points.
 
         The columns are `from_wp`, `to_wp`, `passages`, and `loaded_passages` for those with a pod.
         """
@@ -84,7 +84,7 @@ class Readings:
         return self._core.trips()
 
     def trace(self) -> dict[str, NDArray[Any]]:
-        """All pieces of motion so far, sorted by robot and time.
+        """Return all pieces of motion so far, sorted by robot and time.
 
         The columns are `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`,
         `heading0_rad`, `heading1_rad`, `pod` (carried, -1 without), `top_speed_m_s`.
@@ -110,7 +110,8 @@ class Readings:
 
         Returns
         -------
-        The columns of `trace`, and the number to pass to the next call.
+        tuple
+            The columns of `trace`, and the number to pass to the next call.
 
         Raises
         ------
@@ -124,7 +125,7 @@ class Readings:
 
         They are `plans` (legs), `plan_failures`, `replans`, `refusals` (runs requested by a rolling
         planner that were not free), `improvements`, `expansions`, `cost_tables`, and the wall time
-        `planning_s`. If motions can be late, also `motions`, `late_motions`, the total
+        `planning_s` in s; and, 0 unless motions can be late, `motions`, `late_motions`, the total
         `lateness_s`, and `repairs`.
         """
         counts: dict[str, float] = dict(self._core.counters())
@@ -140,7 +141,7 @@ class Readings:
         return self._core.call_times() / 1e9
 
     def reset_statistics(self) -> None:
-        """Reset totals, heat, trips and counters; the trace is kept."""
+        """Reset totals, heat, edges, trips, counters and call times; the trace is kept."""
         self._core.reset_statistics()
 
     def state_report(self) -> str:

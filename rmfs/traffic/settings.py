@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 COST_TABLE_BYTES = 256_000_000
 EXPANSION_BUDGET = 50_000
-"""Maximum number of labels per leg before a robot waits for all planned motion to end."""
+"""Maximum number of labels of a search for one leg; then the robot waits for all planned motion."""
 
 
 class PlannerSettings(NamedTuple):

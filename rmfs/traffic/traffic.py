@@ -38,6 +38,14 @@ class Traffic(Readings):
     slow_shares
         Shares of its top speed to which a robot may be slowed down.
 
+    Attributes
+    ----------
+    advance
+        Function of a time in us: advance to the next events up to then, or to that time, and return
+        the events as tuples in the order of `TrafficEvent`.
+    command
+        Function of a robot and its program, a list of pairs of a `Step` and its argument.
+
     Raises
     ------
     ValueError
@@ -84,12 +92,9 @@ class Traffic(Readings):
         return self.fork(memo)
 
     def to_bytes(self) -> bytes:
-        """Save the state of the traffic without the layout; a planner in Python is pickled.
+        """Return the state of the traffic, without the layout, as bytes.
 
-        Raises
-        ------
-        ValueError
-            If the planner cannot be written down.
+        A planner written in Python is pickled; if that fails, the error is raised.
         """
         return to_bytes(self._core, self._options)
 
@@ -125,19 +130,26 @@ class Traffic(Readings):
         return self._core.now
 
     def rest_waypoint(self, robot: int) -> int:
-        """Waypoint at which the robot stands, or at which its plan ends."""
+        """Return the waypoint at which a robot stands, or at which its plan ends."""
         return self._core.rest_waypoint(robot)
 
     def robot_waypoint(self, robot: int) -> int:
-        """Waypoint at which the robot stands, or the next one at which it stops."""
+        """Return the waypoint at which a robot stands, or the next one at which it stops."""
         return self._core.next_stop(robot)
 
     def blocked(self) -> list[int]:
-        """Robots that need to drive but have found no path yet."""
+        """Return the robots that need to drive but have found no path yet."""
         return self._core.blocked()
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
         """Return unhindered times from every waypoint to one, from rest to rest.
+
+        Parameters
+        ----------
+        loaded
+            Whether the robot carries a pod.
+        robot
+            Any robot of the kind for which times are wanted.
 
         Returns
         -------
@@ -147,7 +159,12 @@ class Traffic(Readings):
         return self._core.travel_times_to(waypoint, kind, loaded)
 
     def travel_times_from(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
-        """Return unhindered times from one waypoint to every other, from rest to rest.
+        """Return unhindered times from one waypoint to every waypoint, from rest to rest.
+
+        Parameters
+        ----------
+        loaded, robot
+            As for `travel_times_to`.
 
         Returns
         -------
@@ -157,7 +174,7 @@ class Traffic(Readings):
         return self._core.travel_times_from(waypoint, kind, loaded)
 
     def plan(self, robot: int) -> list[PlannedMove]:
-        """Return a robot's planned pieces of motion from rest to rest, with the present one."""
+        """Return a robot's planned moves from rest to rest, beginning with the present one."""
         return [PlannedMove(*move) for move in self._core.plan(robot)]
 
     def delay(self, robot: int, by_us: int, *, begun: bool = False) -> bool:
@@ -182,9 +199,9 @@ class Traffic(Readings):
         return self._core.delay(robot, by_us, begun)
 
     def clearance(self, robot: int) -> list[int]:
-        """Return the next waypoints of the robot's run to which it may drive at once.
+        """Return the next waypoints of a robot's run to which it may drive now.
 
-        They are in the sequence of the run, and all robots planned to use them earlier have left.
+        They are in the sequence of the run. All robots planned to use them earlier have left.
         """
         return self._core.clearance(robot)
 
@@ -201,8 +218,8 @@ class Traffic(Readings):
         Raises
         ------
         ValueError
-            If two robots would have one waypoint, or a heading or waypoint does not exist; nothing
-            has changed then.
+            If two robots would stand at one waypoint, or a heading or waypoint does not exist;
+            nothing has changed then.
         """
         self._core.regroup(list(rests))
 
@@ -302,7 +319,7 @@ class Traffic(Readings):
         self._core.reopen(list(waypoints))
 
     def cut_off(self) -> CutOff:
-        """Return what closed waypoints cut off; robots bound for it would wait."""
+        """Return the storage places and stations that closed waypoints cut off."""
         return CutOff(*self._core.cut_off())
 
     def count_energy(
@@ -346,7 +363,10 @@ class Traffic(Readings):
         self._core.set_power(waypoint, watts)
 
     def exchange_battery(self, robot: int, level_j: float) -> None:
-        """Exchange the battery of a robot that stands still; the gain counts as charged."""
+        """Exchange the battery of a robot that stands still for one with `level_j` joules.
+
+        The gain counts as charged.
+        """
         self._core.exchange_battery(robot, level_j)
 
 

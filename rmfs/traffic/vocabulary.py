@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Step(IntEnum):
-    """Commands to robots."""
+    """Steps of a robot's program: drive to a waypoint, lift or set down a pod, go to a station."""
 
     DRIVE = 0
     LIFT = 1
@@ -39,7 +39,7 @@ class EventKind(IntEnum):
 
 
 class Piece(IntEnum):
-    """Kinds of rows in a trace."""
+    """Kinds of rows in a trace; of GUIDED motion only the way is known, not the position on it."""
 
     HOLD = 0
     TURN = 1
@@ -51,7 +51,7 @@ class Piece(IntEnum):
 
 
 class TripKind(IntEnum):
-    """Purpose of a trip."""
+    """Destination of a trip: a pod, a station, a storage place for a pod, or a resting place."""
 
     TO_POD = 0
     TO_STATION = 1
@@ -88,7 +88,7 @@ class CutOff(NamedTuple):
         Storage places (waypoints) that are closed, or that a pod cannot be carried to or from for
         one of the remaining stations.
     stations
-        Stations (numbers) that are closed or that no pod can reach or leave.
+        Stations (numbers) that are closed, or that no pod can reach or leave.
     """
 
     storage: list[int]

@@ -24,10 +24,14 @@ def replay_server(
 ) -> Server:
     """Return a server of recorded runs, side by side if there are several.
 
-    With a starter, the page has a form that starts runs; without runs, it has only that form.
+    With a starter, the page has a form that starts runs; without runs, it has only that form. A run
+    is read again for each request, so that a reloaded page shows its present state. If the run
+    cannot be read, the answer states why.
 
-    A run is read again for each request, so that a reloaded page shows its present state. If it
-    cannot be read, the answer is the reason.
+    Raises
+    ------
+    InputError
+        If the port cannot be used.
     """
     session = {"runs": len(runs), "live": False, "form": starter is not None}
     gets = {f"/runs/{number}": _scene(run) for number, run in enumerate(runs)}
@@ -41,7 +45,7 @@ def replay_server(
 
 
 def live_server(run: LiveRun, port: int = 0) -> Server:
-    """Return a server of a live run."""
+    """Return a server of a live run; raises InputError if the port cannot be used."""
     session = {"runs": 1, "live": True, "form": False}
     problems = {name: one for name, one in forms.problems().items() if name not in FIXED}
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rmfs.control.choices import Choice
 
 MOST_ROWS = 1 << 48
-"""Maximum number of rows, more than any trace has."""
+"""Largest number of rows that a page may state; no trace has as many."""
 
 LONGEST_NAME = 64
 """Maximum length of the name of a page."""
@@ -64,7 +64,10 @@ class Request:
 
 @contextmanager
 def concern_of(request: Request) -> Iterator[None]:
-    """Execute a page's request; an error is passed to the page and does not stop the run."""
+    """Return a context for executing a page's request, which is done at its end.
+
+    An error is passed to the page and does not stop the run.
+    """
     try:
         yield
     except Exception as error:
@@ -90,12 +93,12 @@ class Exchange(Request):
 
 
 def page_name(page: object) -> str:
-    """Validate and return the name of a page.
+    """Return the name of a page, a text of 1 to `LONGEST_NAME` characters.
 
     Raises
     ------
     InputError
-        If it is not a valid name.
+        If `page` is anything else.
     """
     if not isinstance(page, str) or not 0 < len(page) <= LONGEST_NAME:
         raise InputError(f"page: must be a name of at most {LONGEST_NAME} characters")

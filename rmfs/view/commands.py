@@ -31,12 +31,13 @@ FAREWELL_S = 3.0
 
 
 def serve_runs(paths: list[Path], *, port: int = 0, open_browser: bool = True) -> None:
-    """Serve runs on loopback until interrupted; without runs, serve the form that starts one.
+    """Serve up to two runs on loopback until interrupted, and a form that starts others.
 
     Raises
     ------
     InputError
-        If a run cannot be shown, or the port is in use; this is checked before serving.
+        If there are more than two runs, one cannot be shown, or the port is in use; all of this is
+        checked before serving.
     """
     runs = _loaded(paths)
     for run in runs:
@@ -62,7 +63,7 @@ def watched(
     open_browser: bool = True,
     await_page: bool = False,
 ) -> Iterator[LiveRun]:
-    """Serve a live run on loopback; yields the observer to pass to the simulation.
+    """Serve a live run on loopback; yield its `LiveRun`, whose observer and driver the run needs.
 
     Parameters
     ----------
@@ -78,7 +79,7 @@ def watched(
     Raises
     ------
     InputError
-        If the port is in use, or the speed is not positive.
+        If the port is in use, or the speed is out of range (see `Pace`).
     """
     live = LiveRun(inputs, title=title, speed=speed)
     with live_server(live, port) as server:
@@ -96,7 +97,13 @@ def watched(
 
 
 def export_runs(paths: list[Path], target: Path) -> None:
-    """Export runs to one file; raises errors as `serve_runs` does."""
+    """Export one or two runs to an HTML file.
+
+    Raises
+    ------
+    InputError
+        If there are more than two runs, one cannot be shown, or the file cannot be written.
+    """
     export(_loaded(paths), target)
 
 

@@ -31,12 +31,12 @@ PARTS: dict[str, instances.Kind] = {
 
 
 def names() -> dict[str, list[str]]:
-    """Return the shipped layouts, scenarios and sets of controllers."""
+    """Return the names of the shipped layouts, scenarios and sets of controllers, by part."""
     return {part: instances.names(kind) for part, kind in PARTS.items()}
 
 
 def shipped(part: str, name: str) -> str:
-    """Return a name after checking that it is shipped, as a page may not name files.
+    """Return `name` after checking that it is shipped, as a page may not name files.
 
     Raises
     ------
@@ -60,8 +60,9 @@ def form(chosen: dict[str, str]) -> dict[str, Any]:
     Returns
     -------
     dict
-        `names`: the possible choices; `chosen`: the present ones; for each part, the `schema` and
-        the `values` of its file; and the decision problems with their rules.
+        `names` holds the possible choices, and `chosen` the present ones. `layout` and `scenario`
+        hold the `schema` and the `values` of their file, and `controllers` the decision `problems`
+        with their rules, and the `values`.
 
     Raises
     ------

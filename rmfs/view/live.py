@@ -35,7 +35,7 @@ ABSENT_S = 90.0
 minute."""
 
 BETWEEN_NEWS_S = 0.15
-"""Processor time that a run without a speed limit gets between two answers, in s."""
+"""Processor time that a run without a speed limit gets between two answers to pages, in s."""
 
 LONGEST_WAIT_S = 1.0
 """Wall time after which a page is answered in any case, in s."""
@@ -57,13 +57,18 @@ class LiveRun:
     title
         Title of the run on the page.
     speed
-        Simulated seconds per wall second at the beginning, and when no page with another request is
-        left. Default: as fast as possible.
+        Simulated seconds per wall second at the beginning, and again once the last page has left.
+        Default: as fast as possible.
 
     Attributes
     ----------
     events
-        The observer to pass to `rmfs.simulate`.
+        The observer to pass to `rmfs.simulate`, with `drive` as the driver.
+
+    Raises
+    ------
+    InputError
+        If the speed is out of range (see `Pace`).
     """
 
     def __init__(self, names: Mapping[str, str], *, title: str, speed: float | None = None) -> None:
@@ -87,7 +92,7 @@ class LiveRun:
     def drive(
         self, simulation: Kernel, progress: Callable[[float, float], None] | None = None
     ) -> None:
-        """Advance a run as the pages request, and answer their requests at its end."""
+        """Simulate a run to its end at the pace that its pages set, and answer them meanwhile."""
         with self._meeting:
             self._simulation = simulation
             self._brake(on=True)
@@ -99,7 +104,10 @@ class LiveRun:
         return self.limit_us(now_us) if self._braking else NEVER_US
 
     def limit_us(self, now_us: int) -> int:
-        """Return the latest time that may be simulated now; wait while the run is paused."""
+        """Return the latest time that may be simulated now, in us; wait while there is none.
+
+        That is while the run is paused, or ahead of its speed.
+        """
         with self._meeting:
             while True:
                 self._attend(now_us)
@@ -162,7 +170,7 @@ class LiveRun:
     # --- the pages' threads ---------------------------------------------------------------------
 
     def scene(self) -> bytes:
-        """Pack the scene of the whole run so far, including the warehouse."""
+        """Return the packed scene of the whole run so far, including the warehouse."""
         with self._meeting:
             self._visited = True
             self._meeting.notify_all()
@@ -189,12 +197,21 @@ class LiveRun:
         )
 
     def news(self, known: Known, page: str = "") -> bytes:
-        """Pack the news; a row of motion replaces what the page knew from its time on.
+        """Return the packed motion and events that a page does not know yet.
+
+        A row of motion replaces all that the page knows of the row's robot from its start on.
 
         Parameters
         ----------
+        known
+            What the page has.
         page
             Name of the page that asks, so that its absence is noticed.
+
+        Raises
+        ------
+        InputError
+            If the name is invalid, or too many pages are open.
         """
         if page:
             with self._meeting:
@@ -211,12 +228,16 @@ class LiveRun:
     def control(self, wish: Table) -> None:
         """Pause, step or resume: `{"do": "pause" | "step" | "run", "by_s": ..., "speed": ...}`.
 
-        `page` may name the sender, so that late requests from a closed page are ignored.
+        `by_s` is the length of a step in simulated seconds (0: to the next event), and `speed` is
+        in simulated seconds per wall second (None: as fast as possible). `page` may name the
+        sender, so that late requests from a closed page are ignored.
 
         Raises
         ------
         InputError
-            If the request is invalid.
+            If `do`, `page` or a number is out of range.
+        ValueError, TypeError
+            If `by_s` or `speed` is not a number.
         """
         by_s, speed = float(wish.get("by_s", 0)), wish.get("speed")
         speed = None if speed is None else float(speed)
@@ -245,7 +266,8 @@ class LiveRun:
         Raises
         ------
         InputError
-            If there is no such rule, it is incompatible with the others, or the run has ended.
+            If the problem's controller cannot be exchanged, there is no such rule, it does not fit
+            the run or the other controllers, or the run has ended.
         """
         if problem not in set(Problem) - FIXED:
             raise InputError(f"{problem}: cannot be exchanged while a run goes on")
@@ -262,14 +284,14 @@ class LiveRun:
         wish.wait()
 
     def leave(self, page: str) -> None:
-        """Record that a page was closed, and drop its requests for pace."""
+        """Record that a page was closed; after the last one, the run resumes its initial speed."""
         with self._meeting:
             if page_name(page) in self._pages or len(self._left) < MOST_PAGES:
                 self._left.add(page)
                 self._leave(page)
 
     def close(self, reason: str) -> None:
-        """Answer pending requests, and from now on report that the run has ended."""
+        """Answer pending requests, and report from now on that the run has ended, with a reason."""
         with self._meeting:
             if self._ended:
                 return
@@ -283,12 +305,15 @@ class LiveRun:
             self._meeting.notify_all()
 
     def await_page(self, patience_s: float) -> None:
-        """Wait a limited time until a page requests the run."""
+        """Wait until a page requests the run, at most `patience_s` seconds of wall time."""
         with self._meeting:
             self._meeting.wait_for(lambda: self._visited, patience_s)
 
     def await_farewell(self, patience_s: float) -> None:
-        """Give open pages a moment to load the end of the run."""
+        """Wait until all pages have left, at most `patience_s` seconds of wall time.
+
+        They can load the end of the run meanwhile.
+        """
         end_s = time.monotonic() + patience_s
         # a page that is still being built has not said yet that it is there
         while (self._pages or (self._visited and not self._left)) and time.monotonic() < end_s:

@@ -14,7 +14,7 @@ LAGGING_S = 0.5
 """Lag in wall time, in s, beyond which a run does not try to catch up."""
 
 FASTEST = 1e6
-"""Maximum speed limit in simulated seconds per wall second; higher means no limit."""
+"""Largest speed that can be set, in simulated seconds per wall second; the smallest is 1 / this."""
 
 LONGEST_STEP_S = 1e9
 """Maximum simulated time of one step, in s (30 years)."""
@@ -49,7 +49,7 @@ class Pace:
         return self.speed is None and not self.paused
 
     def run(self, speed: float | None) -> None:
-        """Resume, at a given speed or as fast as possible."""
+        """Resume at a given speed; None: as fast as possible."""
         _check(speed)
         self.speed, self.paused = speed, False
         self._since = self._until_us = None
@@ -62,7 +62,13 @@ class Pace:
         self._one_event = False
 
     def step(self, now_us: int, by_s: float = 0.0) -> None:
-        """Advance by some simulated time (0: to the next event), then pause."""
+        """Advance by some simulated time in s (0: to the next event), then pause.
+
+        Raises
+        ------
+        InputError
+            If the time is negative or greater than `LONGEST_STEP_S`.
+        """
         if not 0 <= by_s <= LONGEST_STEP_S:
             raise InputError(f"step {by_s}: must be 0 to {LONGEST_STEP_S:.0f} seconds")
         self.pause()
@@ -76,7 +82,7 @@ class Pace:
         self.run(self._usual)
 
     def limit_us(self, now_us: int, wall_s: float) -> int | None:
-        """Return the simulated time to which the run may advance now; None if it must wait.
+        """Return the simulated time in us to which the run may advance; None if it must wait.
 
         Parameters
         ----------
@@ -98,7 +104,10 @@ class Pace:
         return paid_us if paid_us >= now_us + self._quantum_us(self.speed) else None
 
     def wait_s(self, now_us: int, wall_s: float) -> float | None:
-        """Return the wall time in s until `limit_us` may change; None: never by itself."""
+        """Return the wall time in s after which to call `limit_us` again.
+
+        None if only a request can change its result.
+        """
         if self.paused or self.speed is None:
             return None
         missing_us = (

@@ -13,7 +13,7 @@ FILES = {
     "/app.js": ("app.js", "text/javascript; charset=utf-8"),
     "/app.css": ("app.css", "text/css; charset=utf-8"),
 }
-"""The only files that are served, by path."""
+"""Name and media type of the only files that are served, by path of the request."""
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
@@ -23,7 +23,7 @@ POLICY = (
 
 
 def content(name: str) -> bytes:
-    """Return a file of the build."""
+    """Return the content of a file of the build."""
     return (STATIC / name).read_bytes()
 
 

@@ -38,7 +38,7 @@ def of_run(folder: RunFolder) -> bytes:
     Raises
     ------
     InputError
-        As `RunFolder.replayed` does.
+        If the run cannot be replayed; see `RunFolder.replayed`.
     """
     layout, trace, log = folder.replayed()
     told = folder.parameters
@@ -85,7 +85,7 @@ def head(
     details
         The texts to which the column `detail` of the events refers.
     sku_names
-        Names of all SKUs; empty if they are the numbers.
+        Names of all SKUs; empty if SKUs have only numbers.
     """
     return {
         "title": title,
@@ -157,9 +157,10 @@ def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:
 
 
 def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
-    """Return a trace, sorted by robot and time, as arrays; the rows of robot r begin at start[r].
+    """Return a trace, sorted by robot and time, as arrays.
 
-    A row ends when the robot's next row begins; `motion.end_us` is the end of the last rows.
+    The rows of robot r begin at `motion.robot_start[r]`. A row ends when the robot's next row
+    begins; the last row of robot r ends at `motion.end_us[r]`.
     """
     start = np.searchsorted(trace["robot"], np.arange(robots + 1)).astype(np.int32)
     end = np.zeros(robots)
@@ -180,7 +181,7 @@ def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
 
 
 def happenings(events: Mapping[str, NDArray[Any]]) -> Arrays:
-    """Return events, sorted by time, as arrays; kinds and details are numbers."""
+    """Return events, in the order given, as arrays; kinds and details are numbers."""
     return {
         "events.time_us": events["time_us"].astype(np.float64),
         "events.kind": events["kind"].astype(np.uint8),

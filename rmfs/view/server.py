@@ -76,6 +76,11 @@ class Server(ThreadingHTTPServer):
     ----------
     token
         Token that permits requests that change something.
+
+    Raises
+    ------
+    InputError
+        If the port cannot be used.
     """
 
     daemon_threads = True
@@ -105,7 +110,7 @@ class Server(ThreadingHTTPServer):
 
     @property
     def cookie(self) -> str:
-        """Name of the cookie with the token; it contains the port, as ports share cookies."""
+        """Name of the cookie with the token; it contains the port, as all ports share cookies."""
         return f"rmfs-{self.server_port}"
 
     def process_request(self, request: Any, client_address: Any) -> None:
@@ -135,7 +140,7 @@ class Server(ThreadingHTTPServer):
                 self._reading.pop(request, None)
 
     def reads(self, request: socket.socket, *, over: bool = False) -> None:
-        """Record that a request is awaited on a connection, or has arrived."""
+        """Record that a request is awaited on a connection or, if `over`, has arrived."""
         with self._lock:
             if over:
                 self._reading.pop(request, None)

@@ -50,7 +50,8 @@ class Starter:
         Raises
         ------
         InputError
-            If a value is invalid, or too many runs are in progress.
+            If a value is invalid, too many runs are in progress, or the run ends before it has a
+            page; the message then is the run's.
         """
         arguments = _arguments(wish, self._results)
         with self._lock:
@@ -68,7 +69,7 @@ class Starter:
         return _address(run)
 
     def close(self) -> None:
-        """Stop unfinished runs; none leaves a half-written folder."""
+        """Stop unfinished runs and wait for their ends; none leaves a half-written folder."""
         for run in self._running:
             if run.poll() is None:
                 run.terminate()  # as Ctrl-C: what is half-written goes

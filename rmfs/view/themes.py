@@ -26,13 +26,15 @@ class Theme:
     ----------
     floor
         Colour of the background.
+    pod, elevator
+        Colours of pods and of elevators.
     towards, share
         The colour of a station of another kind is that of its kind, mixed with this share of
         `towards`.
     stations, tasks
         Colours by kind of station and by task.
     delay
-        Colours from no delay to long delay.
+        Colours of robots, from no delay to long delay.
     """
 
     floor: str
@@ -82,7 +84,7 @@ THEMES = {
 
 
 def themes_of(layout: Layout, visits: Mapping[str, str]) -> dict[str, Any]:
-    """Return the colours for a layout by theme: of each station, each task, pods and delay.
+    """Return the colours for a layout by theme: of stations, tasks, pods, elevators and delay.
 
     Parameters
     ----------

@@ -88,6 +88,7 @@ def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path, monkeypatch) 
         (b"", "no checkpoint"),
         (b"{}\n", "no checkpoint"),
         (pickle.dumps({"a": 1}), "no checkpoint"),
+        (b'{"format": "rmfs-checkpoint/1", "code": "0"}\n', "damaged"),
     ]:
         file.write_bytes(content)
         with pytest.raises(InputError, match=reason):

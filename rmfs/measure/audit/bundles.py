@@ -22,7 +22,10 @@ HAIR = 1e-6
 
 
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
-    """Check that every bundle arrives, is assigned, and is stored as assigned."""
+    """Check that each bundle is assigned after its arrival, and then stored as assigned.
+
+    Also checks that no replenishment station has more bundles than fit into it.
+    """
     steps = rows.of_kind(*STEPS)
     order = np.lexsort((steps.number, steps.order))
     mine = steps.taken(order)

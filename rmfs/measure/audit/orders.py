@@ -79,7 +79,7 @@ class _Orders:
 
 
 def check(rows: Rows) -> Chapter:
-    """Check every order from arrival to completion."""
+    """Check that every order gets exactly its units, between its arrival and its end."""
     orders = _Orders(rows.of_kind(*KINDS))
     orders.follow()
     open_ = [

@@ -18,7 +18,10 @@ KINDS = (
 
 
 def check(layout: Layout, rows: Rows) -> Chapter:
-    """Check every slot of every pick station."""
+    """Check that orders never outnumber a pick station's slots, and are picked only in a slot.
+
+    Also checks that no order is assigned to a station that is switched off.
+    """
     rows = rows.of_kind(*KINDS)
     slots = {number: one.order_slots for number, one in enumerate(layout.pick_stations)}
     at: dict[int, set[int]] = {number: set() for number in slots}

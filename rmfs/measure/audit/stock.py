@@ -20,7 +20,7 @@ HAIR = 1e-6
 
 
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame, pods: pd.DataFrame) -> Chapter:
-    """Check every unit on every pod.
+    """Check that no pod lacks a picked unit or exceeds its capacity, and check the final stock.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ WHERE = "no visit of this pod and robot at this station"
 
 
 def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chapter:
-    """Check every visit to every station.
+    """Check visits to stations, what is handled in them, and where robot and pod stand meanwhile.
 
     Parameters
     ----------

@@ -66,6 +66,11 @@ def ledger(layout: Layout, trace: Trace) -> tuple[Stays, list[Finding]]:
     """Track every pod from place to robot to place.
 
     A pod is stored until its lifting starts, and again from the end of its setting down.
+
+    Returns
+    -------
+    tuple
+        The stays of pods at places, and a finding for each impossible lifting or setting down.
     """
     begin_s = float(trace.t0_us.min() if len(trace) else 0) / MICROSECONDS
     place = [int(waypoint) for waypoint in layout.pod_waypoint]

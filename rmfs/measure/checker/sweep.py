@@ -36,7 +36,7 @@ class Boxes:
     Attributes
     ----------
     piece
-        The motion.
+        Index of the piece of motion.
     lane
         Slab and tier as one number; only boxes of one lane can meet.
     """
@@ -103,7 +103,7 @@ def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -
     Parameters
     ----------
     begin, end
-        Range of slabs, `end` excluded.
+        Range of numbers of slabs, `end` excluded.
     """
     first = np.maximum(np.floor(pieces.t0_s / SLAB_S).astype(np.int64), begin)
     last = np.minimum(np.ceil(pieces.t1_s / SLAB_S).astype(np.int64), end)

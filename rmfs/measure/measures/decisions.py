@@ -17,7 +17,7 @@ SOURCES = {
     "stale": "of solutions that no longer held",
     "failed": "by the own rule because an optimiser failed or found nothing",
 }
-"""Sources of decisions in runs with optimisers."""
+"""Sources of decisions in runs with optimisers, each with its description."""
 
 
 class Decisions(Measure):
@@ -47,7 +47,7 @@ class Decisions(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up decisions by their source."""
+        """Count decisions, sum up wall time, and compute the share of each source."""
         controllers = run.tables["controllers"]
         counts = {source: int(controllers[f"{source}_decisions"].sum()) for source in SOURCES}
         total = sum(counts.values())
@@ -111,7 +111,7 @@ class Optimisers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Evaluate the questions."""
+        """Return number, gaps, delays, failures and wall times of questions to optimisers."""
         decisions = run.tables["decisions"]
         asked = decisions[decisions["source"] == "optimiser"]
         return {

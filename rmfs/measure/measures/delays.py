@@ -32,7 +32,7 @@ class Delays(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up the parts of all orders."""
+        """Return each part's share of the total turnover time of all completed orders."""
         total = by_order(run.tables["delays"]).sum()
         whole = float(total["turnover_s"])
         return {f"{part}_share": ratio(float(total[f"{part}_s"]), whole) for part in PARTS}

@@ -44,7 +44,7 @@ class Energy(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up the energy counted by traffic."""
+        """Return the fleet's energy, in total, per unit and by use; nan if it is not modelled."""
         counted = run.recorder.energy.final
         if not counted:
             return dict.fromkeys((column.name for column in self.columns), nan)
@@ -101,7 +101,7 @@ class Batteries(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Evaluate charging, charge tasks and battery levels; empty without batteries."""
+        """Return energy charged, charging times, cycles and levels; empty without batteries."""
         energy = run.recorder.energy
         batteries, counted, samples = energy.batteries, energy.final, energy.samples
         if batteries is None:

@@ -51,7 +51,7 @@ class Motion(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up the counts of the traffic model."""
+        """Return distances, numbers and mean times of trips, and lifts, of the whole fleet."""
         motion, trips = run.recorder.motion, run.tables["trips"]
         lasted = trips["end_s"] - trips["start_s"]
         delay = (lasted - trips["unhindered_s"])[trips["kind"] != "to_station"]
@@ -106,7 +106,7 @@ class RobotTime(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up the robots' table."""
+        """Return shares of the fleet's time by task and state, and the number of tasks by kind."""
         robots = run.tables["robots"]
         robot_time = run.layout.robots * run.logs.duration_s
         busy = sum(robots[f"task_{task}_s"].sum() for task in BUSY)

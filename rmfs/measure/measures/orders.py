@@ -64,7 +64,7 @@ class OrderTimes(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Evaluate the completed orders."""
+        """Return statistics of the times of completed orders, and how many were late."""
         done = completed(run.tables["orders"])
         lateness = done["lateness_s"]
         late = lateness[lateness > 0]
@@ -110,7 +110,7 @@ class Backlog(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Evaluate the numbers of waiting and of open orders over time."""
+        """Return means and final values of orders waiting or open, and counts of arrivals."""
         orders, counters = run.logs.orders, run.recorder.counters
         measured = (run.start_s, run.end_s)
         waiting = Steps.between(

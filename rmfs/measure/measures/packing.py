@@ -102,7 +102,7 @@ class Packing(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Evaluate parcels and totes."""
+        """Return counts, times and utilisation of packing; empty without packing."""
         given = run.recorder.packing.given
         if given is None:
             return {
@@ -142,7 +142,7 @@ def slots_in_use(totes: pd.DataFrame, *, per_part: bool) -> Steps:
     Parameters
     ----------
     totes
-        The table.
+        The table `totes`.
     per_part
         Whether each part takes a slot, or all parts of an order share one.
     """

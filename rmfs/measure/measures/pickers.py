@@ -67,7 +67,7 @@ class Pickers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Evaluate the units and the table of pickers."""
+        """Return presence, times, fatigue and errors of pickers; empty without pickers."""
         if run.recorder.pickers.staff is None:
             return {
                 column.name: None if column.dtype == COUNT_OR_EMPTY else nan

@@ -35,7 +35,7 @@ class Planning(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the counters of traffic."""
+        """Return the counters of path planning."""
         counters = run.recorder.counters
         names = ("plans", "plan_failures", "replans", "expansions")
         return {
@@ -59,5 +59,5 @@ class Safety(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Count the overlaps."""
+        """Return the number of overlaps; None if the trace was not checked."""
         return {"collisions": None if run.report is None else run.report.collisions}

@@ -13,12 +13,12 @@ NOTHING = float("nan")
 
 
 def ratio(amount: float, by: float) -> float:
-    """Divide; nan if the divisor is 0."""
+    """Return `amount / by`; nan if `by` is 0."""
     return amount / by if by else NOTHING
 
 
 def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
-    """Declare columns for mean, median and quartiles of some times, of which less is better."""
+    """Return columns for mean, median and quartiles of some times in s, of which less is better."""
     told = {
         "mean": "Mean of",
         "median": "Median of",
@@ -32,7 +32,7 @@ def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
 
 
 def spread(name: str, values: pd.Series[float]) -> dict[str, Any]:
-    """Return mean, median and quartiles of some times; empty without any."""
+    """Return mean, median and quartiles of some times, by column name; nan without any times."""
     return {
         f"{name}_mean_s": values.mean(),
         f"{name}_median_s": values.median(),

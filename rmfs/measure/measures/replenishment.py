@@ -38,7 +38,7 @@ class Replenishment(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Evaluate the stored bundles, and the number of waiting ones over time."""
+        """Return statistics of the times of stored bundles, arrivals, and the backlog."""
         stored, bundles = run.logs.stored_now, run.logs.bundles
         waiting = Steps.between(bundles["created_s"], bundles["assigned_s"])
         return {
@@ -63,5 +63,5 @@ class Inventory(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the mean over time."""
+        """Return the time average of the fill level."""
         return {"inventory_share_mean": inventory_share(run.logs).mean(run.start_s, run.end_s)}

@@ -53,7 +53,7 @@ class ShortOrders(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Evaluate orders that left in the measured time, and the backlog at its end."""
+        """Count short orders that left in the measured time, and those still waiting at its end."""
         orders = run.tables["orders"]
         cancelled, done = orders["cancelled_s"].notna(), orders["completed_s"].notna()
         cut = orders["units_cut"]

@@ -43,7 +43,7 @@ class Stations(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return means over the stations of each kind; empty if there are none."""
+        """Return the mean shares of the stations of each kind; nan if there are none."""
         stations = run.tables["stations"]
         told: dict[str, float] = {}
         for share in ("idle", "active"):

@@ -48,7 +48,7 @@ class Throughput(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Add up the counts of the stations."""
+        """Return the totals of all stations and their rates per hour, and the units stored."""
         handled = ("orders_completed", "lines_picked", "units_picked", "bundles_stored")
         counts = {name: run.handled(name) for name in handled}
         hours = run.logs.duration_s / 3600.0
@@ -83,7 +83,10 @@ class Potential(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Compare the picked units with the upper bound, and with stations that never wait."""
+        """Return the upper bound, the picked units as a share of it, and the rate at pile-on.
+
+        All are nan if pickers have no shortest time. Warns if the bound is exceeded.
+        """
         duration_s = run.logs.duration_s
         layout = at_best(run.layout, run.world.staff)
         if layout is None:

@@ -51,7 +51,7 @@ class Visits(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Count the visits in which something was handled, and divide by them."""
+        """Return the number of visits in which something was handled, and means per such visit."""
         picks = int((run.logs.visits["units"] > 0).sum())
         refills = int((run.logs.visits["bundles"] > 0).sum())
         late_bound = int(run.logs.units_now["late_bound"].sum())

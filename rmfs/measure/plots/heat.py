@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 SIDE_M = 1.0
-"""Side length of the square of a waypoint: the distance between neighbours."""
+"""Side length of the square drawn for a waypoint, in m: the usual distance between neighbours."""
 
 UNUSED = "0.94"
 """Grey of waypoints with a zero count."""
@@ -32,7 +32,7 @@ def heat(frame: pd.DataFrame, ax: Axes, *, column: str = "visits", tier: int = 0
     frame
         The table `heat` of a run.
     column
-        `visits`, `loaded_visits` or `waiting_s`.
+        A count or time of the table, such as `visits`, `loaded_visits` or `pick_waiting_s`.
     tier
         Index of the tier. Default 0.
 

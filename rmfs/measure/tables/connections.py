@@ -40,7 +40,7 @@ EDGES = (
 
 
 def connections(logs: Logs) -> pd.DataFrame:
-    """Make one row per pair of waypoints with a trip that ended in the measured time."""
+    """Make a row per start and end of trips that ended in the measured time."""
     told = logs.recorder.trips
     number = logs.layout.waypoints
     pair = told["from_wp"].astype(np.int64) * number + told["to_wp"]
@@ -74,7 +74,7 @@ def connections(logs: Logs) -> pd.DataFrame:
 
 
 def edges(logs: Logs) -> pd.DataFrame:
-    """Make one row per edge or elevator ride that was used."""
+    """Make a row per edge or elevator ride used in the measured time."""
     told, tier = logs.recorder.edges, logs.layout.tier
     return tidy(
         "edges",
@@ -90,7 +90,7 @@ def edges(logs: Logs) -> pd.DataFrame:
 
 
 def waypoint_kinds(layout: Layout) -> NDArray[np.str_]:
-    """Return the use of each waypoint as a word."""
+    """Return the use of each waypoint as a word, shape (N,): as `from_kind` in `connections`."""
     kinds = np.full(layout.waypoints, "road", dtype="<U13")
     kinds[layout.is_queue] = "queue"
     kinds[layout.is_storage] = "storage"

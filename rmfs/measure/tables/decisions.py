@@ -138,9 +138,9 @@ CONTROLLERS = (
 
 
 def decisions(logs: Logs) -> pd.DataFrame:
-    """Make a row per controller call that made a decision, and per question to an optimiser.
+    """Make a row per call in which a controller made decisions itself, and per question it asked.
 
-    The table covers the measured time only, without the warm-up.
+    The questions are those to optimisers; all rows are of the measured time, sorted by time.
     """
     import pandas as pd
 

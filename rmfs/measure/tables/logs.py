@@ -46,7 +46,7 @@ class Logs:
 
     @cached_property
     def picks_by_hand(self) -> pd.DataFrame:
-        """How pickers handled the units of the measured time; empty without pickers."""
+        """How pickers handled each row of `units_now`; empty without pickers."""
         told = framed(self.recorder.pickers.units)
         return told.iloc[len(self.units) - len(self.units_now) :].reset_index(drop=True)
 
@@ -100,7 +100,7 @@ class Logs:
 
     @cached_property
     def all_trips(self) -> dict[str, NDArray[Any]]:
-        """Trips that ended, those of the warm-up first: robot, kind, times in s."""
+        """Trips that ended, those of the warm-up first: columns for robot, kind, and times in s."""
         parts = [one for one in (self.recorder.early_trips, self.recorder.trips) if one]
         whole = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
         return {
@@ -146,7 +146,7 @@ class Logs:
 
 
 def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
-    """Return a log as a frame, with additional rows of the same columns."""
+    """Return a log as a frame, followed by the rows `more`, which have the same columns."""
     import pandas as pd
 
     columns = log.columns()
@@ -157,7 +157,7 @@ def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
 
 
 def count(index: pd.Series[int], length: int) -> NDArray[np.int64]:
-    """Count how often each of the indices 0 to length - 1 occurs."""
+    """Return how often each of the indices 0 to length - 1 occurs, shape (length,)."""
     return np.bincount(index.to_numpy(), minlength=length)
 
 

@@ -100,7 +100,7 @@ def trips(logs: Logs) -> pd.DataFrame:
 
 
 def heat(logs: Logs) -> pd.DataFrame:
-    """Make a row per waypoint."""
+    """Make a row per waypoint, for the measured time."""
     layout, counted = logs.layout, logs.recorder.heat
     return tidy(
         "heat",

@@ -47,7 +47,10 @@ TOTES = (
 
 
 def parcels(logs: Logs) -> pd.DataFrame:
-    """Make a row per order that had reached the packing stage and was not packed before."""
+    """Make a row per order that has left a pick station at least in part, by arrival.
+
+    Orders packed before the measured time are left out.
+    """
     frame = _seen(logs).sort_values("order", ignore_index=True)
     frame["cycle_s"] = frame["packed_s"] - frame["created_s"]
     return tidy("parcels", PARCELS, frame)

@@ -81,8 +81,9 @@ def served(logs: Logs) -> pd.DataFrame:
     -------
     DataFrame
         `order`, `created_s`, `due_s`, `done_s` (packed or, without packing, picked; empty if not),
-        `class`, and the flags `done`, `cancelled`, `overdue` and `on_time`. Orders before the
-        measured time are excluded; orders that wait and are not overdue have no flag.
+        `class`, and the flags `done`, `cancelled`, `overdue` and `on_time`. Orders done or
+        cancelled before the measured time are excluded; orders that wait and are not overdue have
+        no flag.
     """
     frame = seen(logs)[["order", "created_s", "due_s", "completed_s", "cancelled_s"]]
     frame = frame.rename(columns={"completed_s": "done_s"})

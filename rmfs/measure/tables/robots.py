@@ -71,7 +71,7 @@ _ENERGY = (
 
 
 def robots(logs: Logs) -> pd.DataFrame:
-    """Make a row per robot."""
+    """Make a row per robot, for the measured time."""
     number, motion = logs.layout.robots, logs.recorder.motion
     columns: dict[str, Any] = {
         "robot": np.arange(number),
@@ -98,7 +98,7 @@ def robots(logs: Logs) -> pd.DataFrame:
 
 
 def with_task(logs: Logs, task: str) -> Steps:
-    """Return the number of robots with a task over time."""
+    """Return the number of robots with a kind of task over time, warm-up included."""
     own = logs.tasks[logs.tasks["kind"].to_numpy() == TASKS.index(task)]
     # a task still under way at the end of the run counts up to the end
     ends = own["end_s"].mask(own["end_s"] >= logs.end_s)

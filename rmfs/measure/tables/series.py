@@ -103,7 +103,7 @@ SERIES = (
 
 
 def series(logs: Logs) -> pd.DataFrame:
-    """Make the table: counts per interval, and levels at the end of each."""
+    """Make a row per minute: counts and means of the interval, and levels at its end."""
     ends = np.array([time for time, _ in logs.recorder.samples])
     edges = np.concatenate([[logs.start_s], ends])
     length = np.diff(edges)
@@ -143,14 +143,14 @@ def series(logs: Logs) -> pd.DataFrame:
 
 
 def motion_per_interval(logs: Logs) -> dict[str, Floats]:
-    """Return the increase of the fleet's totals in each interval."""
+    """Return the increase of the fleet's totals of distance (m) and times (s) in each interval."""
     samples = logs.recorder.samples
     names = samples[0][1].keys()
     return {name: np.diff([0.0, *(totals[name] for _, totals in samples)]) for name in names}
 
 
 def inventory_share(logs: Logs) -> Steps:
-    """Return the space used by stored units over the capacity of all pods, over time."""
+    """Return the space used by stored units as a share of the capacity of all pods, over time."""
     inventory = logs.world.inventory
     taken = -inventory.unit_space[logs.units["sku"].to_numpy()]
     time = np.concatenate([logs.units["time_s"].to_numpy(), logs.stored["time_s"].to_numpy()])

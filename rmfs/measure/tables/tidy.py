@@ -42,6 +42,8 @@ def tidy(
     ------
     ValueError
         If a column is missing or not declared.
+    TypeError, ValueError, OverflowError
+        If a value does not fit the declared type.
     """
     import pandas as pd
 

@@ -19,7 +19,7 @@ class Balance(NamedTuple):
     Attributes
     ----------
     given_w
-        Maximum power of all energy stations and charging waypoints.
+        Maximum power of all energy stations and charging waypoints together.
     least_w
         Minimum power of the fleet: its electronics alone.
     has_stations
@@ -50,7 +50,7 @@ def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
 
 
 def balance(layout: Layout, energy: Energy) -> Balance:
-    """Compare the power available to a fleet with its minimum demand."""
+    """Return the power available to a fleet and its minimum demand."""
     given_w = sum(
         other.kind.long_run_w
         for other in layout.other_stations
@@ -75,12 +75,13 @@ def working_w(layout: Layout, energy: Energy) -> float:
 
 
 def refuse(layout: Layout, energy: Energy) -> None:
-    """Refuse batteries that cannot be charged, or not sufficiently.
+    """Refuse batteries that cannot be charged, or with too little power.
 
     Raises
     ------
     InputError
-        If the batteries cannot be charged sufficiently; the message states the deficit.
+        If nothing charges, or the available power is below the fleet's minimum demand; the message
+        states the deficit.
     """
     found = balance(layout, energy)
     if not found.given_w:

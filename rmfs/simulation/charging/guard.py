@@ -1,4 +1,4 @@
-"""Prevents stranding: a robot that could not complete another task is sent to charge in any case.
+"""Prevents stranding: a robot that could not complete another task is sent to charge instead.
 
 Strandings can still occur, for example after a long delay or if a place is out of service. They are
 counted, and the robot is rescued after a given time.
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 LOOK_US = 60_000_000
-"""Time between checks of all levels."""
+"""Time between checks of all levels, in us."""
 
 AGAIN_US = 1_000_000
-"""Delay before retrying to stop a robot that cannot be stopped now."""
+"""Delay in us before retrying to stop a robot that cannot be stopped now."""
 
 
 class EnergyGuard:
@@ -40,7 +40,7 @@ class EnergyGuard:
     Attributes
     ----------
     needs
-        Upper bounds of the energy that a robot needs.
+        Upper bounds of the energy that a robot needs for another task.
     """
 
     def __init__(
@@ -70,7 +70,10 @@ class EnergyGuard:
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:
-        """Before tasks are assigned, send robots that could not complete another one to charge."""
+        """Before tasks are assigned, send robots that could not complete another one to charge.
+
+        A robot that carries a pod stores it first.
+        """
         view = self._view
         for robot in [*view.asking.values(), *view.resting.values()]:
             if view.now_s >= self._safe_until_s[robot.index]:

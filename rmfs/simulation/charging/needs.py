@@ -48,7 +48,8 @@ class Needs:
     store_j
         For a robot with a pod at a station: store it anywhere, and go to charge from there.
     visit_j
-        The same after a visit to any other station.
+        For a robot with a pod at a station: bring it to any other station, store it anywhere, and
+        go to charge from there.
     """
 
     task_j: float
@@ -84,10 +85,10 @@ class Needs:
         self._loaded_w, self._work = loaded_w, work
 
     def task_from_j(self, waypoint: int) -> float:
-        """Return the same as `task_j` for a robot that stands at a given waypoint.
+        """Return the bound `task_j` in J for a robot that stands at a given waypoint.
 
-        It fetches any pod from there and brings it to the station farthest from the pod. Never more
-        than `task_j`.
+        The robot fetches any pod from there and brings it to the station farthest from the pod. The
+        result is never greater than `task_j`.
         """
         if self._bring_j is None:
             each_s = [self._travel.to(at, loaded=True)[self._places] for at in self._work.tolist()]

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ChargeService:
-    """The service of one plug-in place; traffic charges the robot, this ends it in time.
+    """The service of one plug-in place; traffic charges the robot, and this service ends it.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class ChargeService:
             self._enter()
 
     def set_power(self, power_w: float) -> None:
-        """Change the charging power; the caller updates traffic."""
+        """Change the charging power of the place, in W; the caller updates traffic."""
         self.power_w = power_w
         if self._task is not None:
             self._cancel()

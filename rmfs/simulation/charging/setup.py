@@ -27,7 +27,7 @@ def count_energy(
     Raises
     ------
     InputError
-        If there are batteries that cannot be charged, or not sufficiently.
+        If there are batteries that cannot be charged, or with too little power.
     """
     if given is None:
         return []

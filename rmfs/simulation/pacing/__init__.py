@@ -1,7 +1,7 @@
 """Pacing: how simulated time accounts for the computation of optimisers.
 
-A rule decides at once. A controller that asks an optimiser gets the answer later; the pacing
-determines how much later, and runs the optimiser.
+A rule decides without delay in simulated time. A controller that asks an optimiser may get the
+answer later; the pacing determines how much later, and runs the optimiser.
 """
 
 from __future__ import annotations
@@ -49,7 +49,8 @@ class Pacing(Protocol):
         modules
             Modules with the functions that answer the questions.
         give
-            Function to call once with the answer to each question, possibly from within `ask`.
+            Function to call once per answered question with the call, which holds the answer, and
+            the simulated time (us) of its effect; possibly from within `ask`.
         """
         ...
 
@@ -58,7 +59,7 @@ class Pacing(Protocol):
         ...
 
     def limit_us(self, now_us: int) -> int:
-        """Return the latest time that may be simulated now; waits until it is past `now_us`."""
+        """Return the latest time in us that may be simulated; wait until it is past `now_us`."""
         ...
 
     def end(self) -> None:

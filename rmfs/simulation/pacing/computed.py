@@ -1,4 +1,4 @@
-"""Reproducible modes: a question is solved at once, and its answer delayed by a computed time."""
+"""Reproducible modes: a question is solved when asked, its answer delayed by a computed time."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Computed(ABC):
         self._give = give
 
     def ask(self, call: Call) -> None:
-        """Solve the question and delay its answer.
+        """Solve the question, and let its answer take effect after the computed time.
 
         Raises
         ------
@@ -105,11 +105,11 @@ class Computed(ABC):
 
     @abstractmethod
     def seconds(self, answer: Answer) -> float:
-        """Return the simulated time that an answer takes."""
+        """Return the simulated time from a question to the effect of its answer, in s."""
 
 
 class Instant(Computed):
-    """Answers take effect at once."""
+    """Answers take effect at the instant of their question."""
 
     def seconds(self, answer: Answer) -> float:
         """Return 0."""
@@ -125,7 +125,7 @@ class Work(Computed):
         self._per_entry = settings.seconds_per_entry
 
     def seconds(self, answer: Answer) -> float:
-        """Return the time by calls, units of work and entries built of the back end.
+        """Return the time of an answer in s, at the rates of its back end.
 
         Raises
         ------
@@ -157,7 +157,7 @@ class Fixed(Computed):
         self._rng = generator(seed, Stream.PACING)
 
     def seconds(self, answer: Answer) -> float:
-        """Return the constant time, or draw one."""
+        """Return the constant time, or draw one, in s."""
         if isinstance(self._seconds, float):
             return self._seconds
         return float(self._seconds.quantile(self._rng.random()))

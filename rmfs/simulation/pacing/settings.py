@@ -57,7 +57,7 @@ class WorkPacing(_Mode):
 
 
 class FixedPacing(_Mode):
-    """Optimisers take a constant or random time."""
+    """Optimisers take a constant or random simulated time."""
 
     mode: Literal["fixed"] = "fixed"
     seconds: NotNegative | Distribution = 1.0

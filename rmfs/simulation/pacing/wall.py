@@ -45,10 +45,10 @@ class Wall:
     """Submits questions to worker processes and limits the simulation while any is open.
 
     While a question is open, the simulated time since it was asked is at most the wall time since
-    it was submitted, times `speed` (paper, section 3.1). Its answer takes effect when that wall
-    time, times `speed`, has passed in the simulation, even if the simulation gets there later. The
-    wall time runs from before the question is pickled until the worker has pickled the answer;
-    waiting for a free worker counts, but starting a worker does not.
+    it was submitted, times `speed` (paper, section 3.1). Its answer takes effect when the wall time
+    that it took, times `speed`, has passed in the simulation. This wall time runs from before the
+    question is pickled until the worker has pickled the answer; waiting for a free worker counts,
+    but starting a worker does not.
 
     Parameters
     ----------
@@ -67,7 +67,13 @@ class Wall:
         self._modules: list[str] = []
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
-        """Start the workers and wait until they are ready, if any controller asks optimisers."""
+        """Start the workers and wait until they are ready, if any controller asks optimisers.
+
+        Raises
+        ------
+        OptimiserError
+            If a worker cannot import the modules.
+        """
         self._give = give
         self._modules = list(modules)
         if self._modules:
@@ -86,7 +92,10 @@ class Wall:
             self._hand_over(asked, worker)
 
     def limit_us(self, now_us: int) -> int:
-        """Return the simulated time covered by wall time; sleep until it passes `now_us`."""
+        """Return the simulated time in us covered by wall time; sleep until it passes `now_us`.
+
+        Without open questions there is no limit.
+        """
         while self._open:
             self._collect(now_us)
             if not self._open:

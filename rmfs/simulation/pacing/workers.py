@@ -122,7 +122,7 @@ class Worker:
         Raises
         ------
         DeadWorkerError
-            If the worker has ended.
+            If the worker has ended, or its reply cannot be read.
         """
         if not self.connection.poll():
             return None
@@ -189,7 +189,7 @@ class Workers:
         self._workers[self._workers.index(worker)] = Worker(self._modules)
 
     def listen(self, seconds: float) -> None:
-        """Sleep until a busy worker replies or ends, at most for a given time."""
+        """Sleep until a busy worker replies or ends, at most for `seconds` of wall time."""
         busy = [worker.connection for worker in self._workers if worker.number >= 0]
         if busy:
             wait(busy, seconds)

@@ -29,7 +29,7 @@ class Packers:
     Attributes
     ----------
     waiting
-        Parcels that wait for a packer.
+        Parcels that wait for a packer, the one that came first at the front.
     busy
         Number of busy packers.
     """

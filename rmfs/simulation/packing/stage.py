@@ -74,7 +74,7 @@ class PackingStage(Observer):
                 self._services.append(service)
 
     def takes(self, order: Order) -> bool:
-        """Whether a pick station may release an order; otherwise it is called when it may."""
+        """Whether a pick station may release an order; if not, it is called as soon as it may."""
         if self._has_room(order):
             return True
         after_us = round(self._given.by_hand_after_s * 1e6)
@@ -168,7 +168,7 @@ def packing_stage(
     world: World,
     events: Observer,
 ) -> list[Observer]:
-    """Create the stage, if a scenario has one; return the observers of the run for it."""
+    """Create the stage if the scenario has one; return the observers that the run needs for it."""
     if given is None:
         return []
     return [PackingStage(given, layout, services, seed, agenda=agenda, world=world, events=events)]

@@ -53,7 +53,7 @@ class Hands(Observer):
         return self._staff.at_station[station] is not None
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Choose the first unit on the face that is shown; None if there is none."""
+        """Return the task's first pick on the face that is shown; None if there is none."""
         faces, shown = self._faces, self._shown(station)
         if faces is None or shown < 0:
             return None
@@ -70,7 +70,12 @@ class Hands(Observer):
         Parameters
         ----------
         station_s, robot_s
-            Times for which the unit occupies station and robot according to the layout.
+            Times for which the unit occupies station and robot according to the layout, in s.
+
+        Returns
+        -------
+        Handled
+            How the unit is handled, with the times in s that it takes this picker.
         """
         staff, now_s = self._staff, self._world.now_s
         picker = staff.at_station[station]

@@ -46,7 +46,9 @@ def staffed(
 
     Returns
     -------
-    Observers of the run for them, and the clock of their roster.
+    tuple
+        The observers that the run needs for them, and the clock of their roster; an empty list and
+        None without pickers.
 
     Raises
     ------
