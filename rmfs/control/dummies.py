@@ -91,7 +91,7 @@ class DummyPPS(PodSelection[LateBinding]):
 
 
 class DummyPSA(PodStorageAssignment[NoParameters]):
-    """Leaves the choice of storage places to another controller."""
+    """Leaves the choice of storage locations to another controller."""
 
     is_dummy: ClassVar[bool] = True
 

@@ -80,7 +80,7 @@ _DECLARED = {
         "lexicographic",
     ),
     Problem.PSA: _Declared(
-        "pod storage assignment: pod -> storage place",
+        "pod storage assignment: pod -> storage location",
         "rmfs.control.psa:PodStorageAssignment",
         "nearest",
     ),
@@ -107,7 +107,7 @@ _DECLARED = {
     ),
     Problem.PP: _Declared("path planning", "rmfs.control.pp:PathPlanning", "time-windows"),
     Problem.REPOSITIONING: _Declared(
-        "repositioning: idle pod -> another storage place",
+        "repositioning: idle pod -> another storage location",
         "rmfs.control.repositioning:Repositioning",
         "none",
     ),

@@ -18,7 +18,7 @@ from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Spac
 
 
 class PerSide(Strict):
-    """Number of stations or elevators on each side of a tier."""
+    """How many of them stand on each side of a tier."""
 
     west: Amount = Field(0, description="on the side with the smallest x")
     east: Amount = Field(0, description="on the side with the largest x")
@@ -34,7 +34,7 @@ class PerSide(Strict):
 class OtherStations(PerSide):
     """Stations of another kind: how many stand on each side of a tier, and their parameters.
 
-    Plug-in places may also stand within the storage area, each replacing a storage place.
+    Such stations may also stand within the storage area, each in place of a storage location.
     """
 
     within: Amount = Field(0, description="number within the storage area of a tier")
@@ -69,7 +69,7 @@ class LayoutParameters(Strict):
     pod_transfer_s: Seconds = Field(2.2, description="duration of lifting or setting down a pod, s")
 
     pod_share: float = Field(
-        0.85, gt=0, lt=1, description="pods per storage place (rounded down per tier)"
+        0.85, gt=0, lt=1, description="pods per storage location (rounded down per tier)"
     )
     pod_radius_m: Radius = Field(0.45, description="radius of a pod, m")
     pod_capacity: Space = Field(500.0, description="space units per pod")
@@ -91,35 +91,56 @@ class LayoutParameters(Strict):
     )
 
     hall_pattern: Literal["tim", "highway"] = Field(
-        "tim", description='hall in front of the stations: "tim" (lanes and loops) or "highway"'
+        "tim",
+        description="pattern of the halls, the areas between the storage area and the queues of "
+        "stations. Besides the lanes that cross a hall, lanes run along it: two beside the queues "
+        '("tim"), or one per tile of its width ("highway")',
     )
-    two_directional_aisles: bool = Field(False, description="whether all aisles are two-way")
-    single_lane: bool = Field(True, description="whether aisles are one tile wide; otherwise two")
+    two_directional_aisles: bool = Field(
+        False, description="whether all aisles are two-way; otherwise all are one-way"
+    )
+    single_lane: bool = Field(
+        True, description="whether aisles are one tile wide; otherwise they are two tiles wide"
+    )
     horizontal_aisles: int = Field(
-        8, ge=2, le=1000, description='even, unless two-directional with "tim" halls or two lanes'
+        8,
+        ge=2,
+        le=1000,
+        description="number of horizontal aisles; must be even if aisles are one-way, or if they "
+        'are one tile wide and halls are "highway"',
     )
     vertical_aisles: int = Field(
-        6, ge=2, le=1000, description='even, unless two-directional with "tim" halls or two lanes'
+        6,
+        ge=2,
+        le=1000,
+        description="number of vertical aisles; must be even under the same conditions",
     )
     block_length: int = Field(
         4,
         ge=2,
         le=1000,
         multiple_of=2,
-        description="length of a storage block in tiles of 1 m; its depth is 2",
+        description="length of a storage block in x, in tiles of 1 m; its depth in y is 2 tiles",
     )
     hall_width: int = Field(
-        6, ge=2, le=1000, description='width of a hall in tiles; even for "highway"'
+        6, ge=2, le=1000, description='width of a hall in tiles; must be even for "highway"'
     )
     buffer_width: int = Field(
-        4, ge=2, le=1000, description="length of a segment of a station's queue, in tiles"
+        4,
+        ge=2,
+        le=1000,
+        description="length of each straight segment of a station's queue, in tiles",
     )
     entry_exit_distance: int = Field(
-        3, ge=1, le=1000, description="distance from a queue's entrance to its exit, in tiles; odd"
+        3,
+        ge=1,
+        le=1000,
+        description="distance from a queue's entrance to its exit, in tiles; must be odd",
     )
     counter_clockwise_ring: bool = Field(
         True,
-        description="whether the ring road is counter-clockwise, with x to the right and y up",
+        description="whether the one-way road around the storage area runs counter-clockwise, with "
+        "x to the right and y upwards; if not, all one-way roads are reversed",
     )
 
     pick_stations: PerSide = Field(PerSide(east=4), description="pick stations per tier")

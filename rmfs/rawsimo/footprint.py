@@ -84,15 +84,16 @@ def _size() -> list[Mapped]:
 
 
 def _counts() -> list[Mapped]:
-    rejected = (
-        "none: rejected arrivals are not recorded; `order_redraws` counts drawn lines without stock"
-    )
+    rejected = "none: rejected arrivals are not recorded"
     whole = "over the measured time (RAWSim-O: only over samples not yet written to disk)"
     return [
         Mapped("BundlesPlaced", "`bundles_created`"),
         Mapped("OrdersPlaced", "`orders_created`"),
         Mapped("BundlesRejected", rejected),
-        Mapped("OrdersRejected", rejected),
+        Mapped(
+            "OrdersRejected",
+            f"{rejected}; `order_redraws` counts lines drawn again for lack of stock",
+        ),
         Mapped("BundlesInBacklogRemaining", "`backlog_bundles_end`"),
         Mapped("OrdersInBacklogRemaining", "`backlog_orders_end`"),
         Mapped("BundlesInBacklogAvg", f"`backlog_bundles_mean`, {whole}"),
@@ -110,7 +111,7 @@ def _counts() -> list[Mapped]:
         Mapped(
             "PathPlanningTimeouts", "none: planning is limited by counted work, not by wall time"
         ),
-        Mapped("PathPlanningTimeoutFractional", "none, as above"),
+        Mapped("PathPlanningTimeoutFractional", "none, as for PathPlanningTimeouts"),
     ]
 
 
@@ -235,7 +236,10 @@ def _stations() -> list[Mapped]:
     return [
         *_over_stations("ItemPileOne", "units_per_visit", "units_per_visit"),
         *(
-            Mapped(f"InjectedItemPileOne{end}", f"{words[end]} of {late}; {ours}")
+            Mapped(
+                f"InjectedItemPileOne{end}",
+                f"{words[end]} of {late}" + (f"; {ours}" if end == "Avg" else ""),
+            )
             for end in _SPREAD
         ),
         *_over_stations("OrderPileOne", "orders_per_visit", "orders_per_visit"),
@@ -284,7 +288,8 @@ def _states() -> list[Mapped]:
         Mapped("StateTimePickup", transfer),
         Mapped(
             "StateCountSetdown",
-            "`tasks_park` + `tasks_reposition`, without tasks still in progress",
+            "`tasks_park` + `tasks_reposition`, minus the tasks of these kinds in progress at the "
+            "end",
         ),
         Mapped("StateTimeSetdown", transfer),
         Mapped("StateCountGet", "`replenishment_visits`, in which `bundles_stored` were stored"),
@@ -297,8 +302,8 @@ def _states() -> list[Mapped]:
         Mapped(
             "StateTimeMove", "sum of `robots.moving_s` + `robots.turning_s` + `robots.waiting_s`"
         ),
-        Mapped("StateCountEvade", "none: no robot has to evade another"),
-        Mapped("StateTimeEvade", "none, as above"),
+        Mapped("StateCountEvade", "none: evading another robot is not recorded as a state"),
+        Mapped("StateTimeEvade", "none, as for StateCountEvade"),
         Mapped("StateCountElevator", "sum of `edges.passages` where `edges.ride`"),
         Mapped("StateTimeElevator", "sum of `robots.riding_s`"),
     ]
@@ -371,7 +376,7 @@ FILES: tuple[Mapped, ...] = (
     Mapped("orderplacementprogression.csv", "`orders.created_s`"),
     Mapped(
         "collisionprogression.csv",
-        "none: rmfs run --check proves that there are no collisions; `collisions`",
+        "none: `collisions` counts them; `rmfs run --check` proves that there are none",
     ),
     Mapped("tripscompleted.csv", "table trips, with distance and `trips.station`"),
     Mapped("traveleddistanceprogression.csv", "`series.distance_m`"),
@@ -409,7 +414,11 @@ FILES: tuple[Mapped, ...] = (
     Mapped("output.log", "the error stream of the command"),
     Mapped("tags.csv", "none, as for Tag"),
     Mapped("exception.txt", "the error stream and the exit code"),
-    Mapped("debug.xinst", "none: robots never overlap, and the checker would report it"),
+    Mapped(
+        "debug.xinst",
+        "none: it shows robots that overlap; in rmfs they never do, and the checker would report "
+        "it",
+    ),
 )
 """RAWSim-O's output files."""
 

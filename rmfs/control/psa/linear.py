@@ -21,7 +21,7 @@ class LinearParameters(Parameters):
     """Parameters of PSA linear."""
 
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("place"))
-    """Weights of the scaled features of storage places (see the page on learning)."""
+    """Weights of the scaled features of storage locations (see the page on learning)."""
 
     @pydantic.field_validator("weights")
     @classmethod

@@ -33,7 +33,7 @@ class TaskRolloutParameters(RolloutParameters):
 
     over: Annotated[tuple[Part, ...], pydantic.Field(min_length=1)] = ("ta", "pps", "psa")
     """Decisions that may differ from those of the base rule, PPS and PSA: the station (`ta`), the
-    pod (`pps`), the storage place (`psa`)."""
+    pod (`pps`), the storage location (`psa`)."""
 
 
 class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):

@@ -23,7 +23,7 @@ class TurnoverParameters(Parameters):
     """Parameters of turnover classes, which rules that work together (RPS, PSA) must share."""
 
     class_borders: Annotated[tuple[float, ...], pydantic.Field(min_length=1)] = (0.1, 0.3, 1.0)
-    """Cumulative shares of the storage places at which classes end, nearest places first; the last
+    """Cumulative shares of the storage locations at which classes end, nearest first; the last
     is 1."""
     place_metric: Metric = "time"
     """Measure of the distance from a place to its nearest pick station."""

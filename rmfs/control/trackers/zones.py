@@ -24,7 +24,7 @@ class ZoneParameters(Parameters):
     """Parameters of zones, which rules that work together (PSA, repositioning) must share."""
 
     cache_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.25
-    """Share of all storage places used for caches, divided equally among the pick stations."""
+    """Share of all storage locations used for caches, divided equally among the pick stations."""
     drop_off_places: Annotated[int, pydantic.Field(ge=0)] = 0
     """Number of places in the drop-off zone of each pick station."""
     zone_priority: ZonePriority = "drop-off"

@@ -25,13 +25,13 @@ class Equipment(Strict):
         1.0, description="distance between the centres of neighbouring cells, m"
     )
     queue_length: Amount = Field(
-        3, description="number of queue places of a station whose queue is not given"
+        3, description="maximum number of queue places of a station whose queue is not given"
     )
 
     robots: Count | None = Field(
         None,
-        description="total number of robots; those not drawn stand on aisles; default: those "
-        "drawn, or else 4 per pick station as far as there is room",
+        description="total number of robots; those not drawn start on aisles. Default: the number "
+        "drawn or, if none is drawn, 4 per pick station, as far as there is room",
     )
     robot_radius_m: Radius = _as_generated("robot_radius_m")
     acceleration_m_s2: Positive = _as_generated("acceleration_m_s2")
@@ -41,7 +41,9 @@ class Equipment(Strict):
     pod_transfer_s: Positive = _as_generated("pod_transfer_s")
 
     pod_share: Annotated[float, Field(ge=0, le=1)] = Field(
-        0.85, description="pods per storage place that is drawn neither full nor empty"
+        0.85,
+        description="pods per storage location (rounded down); in a picture, only those drawn "
+        "as `x` count",
     )
     pod_radius_m: Radius = _as_generated("pod_radius_m")
     pod_capacity: Positive = _as_generated("pod_capacity")
@@ -67,11 +69,13 @@ StationPlaces = Annotated[list[Place], Field(min_length=1)]
 
 
 class MapStations(Equipment):
-    """The stations and storage places of a grid map `NAME.map`, given in `NAME.map.toml`."""
+    """The stations and storage locations of a grid map `NAME.map`, given in `NAME.map.toml`."""
 
     format: Literal["rmfs-map-stations/1"] = Field(description="version of this format")
     storage: str = Field(
-        "", description="signs of the map that become storage places if an aisle is beside them"
+        "",
+        description="signs of the map that stand for storage locations; those without an aisle "
+        "beside them are left out",
     )
     pick_stations: list[StationPlaces] = Field(
         default_factory=list,

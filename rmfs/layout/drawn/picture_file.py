@@ -37,13 +37,14 @@ ARROWS: dict[str, Cell] = {">": (0, 1), "^": (-1, 0), "<": (0, -1), "v": (1, 0)}
 SIGNS = {
     ".": "aisle, both ways",
     "> < ^ v": "one-way aisle: leads to other aisles only in this direction",
-    "x": "storage place; the share `pod_share` of these have a pod at the start",
-    "X": "storage place with a pod at the start",
-    "o": "storage place without a pod at the start",
+    "x": "storage location; a share `pod_share` of these have a pod at the start",
+    "X": "storage location with a pod at the start",
+    "o": "storage location without a pod at the start",
     "P or g": "pick station",
     "R": "replenishment station",
-    "q": "place of a queue; the places form a chain to the station",
-    "1 ... 9": "place of a queue by its rank from the station, where queues lie side by side",
+    "q": "place of a queue; the places form a chain that ends at the station",
+    "1 ... 9": "place of a queue, numbered from the station; needed instead of `q` where queues "
+    "lie side by side",
     "r": "aisle with a robot at the start",
     "# or @ or blank": "nothing: robots cannot go there",
 }

@@ -34,13 +34,13 @@ class ExplicitWaypoint(Strict):
     storage: bool = Field(False, description="whether a pod may be stored there")
     queue: bool = Field(
         False,
-        description="whether it belongs to a queue zone although it is not a place of the "
-        "queue, such as an exit; queue places need not be marked",
+        description="whether it belongs to a queue zone (the places of a queue and the way out) "
+        "without being a place of the queue; queue places need not be marked",
     )
 
 
 class ExplicitPickStation(Strict):
-    """A pick station; `queue` lists its waiting places from the station to the entrance."""
+    """A pick station; `queue` lists its waypoints from the station to the entrance."""
 
     queue: list[Index] = Field(
         min_length=1, description="waypoints from the station to the entrance of its queue"
@@ -49,7 +49,9 @@ class ExplicitPickStation(Strict):
     order_slots: Some = Field(description="maximum number of open orders")
     unit_transfer_s: Seconds = Field(description="time in s for which a unit occupies the station")
     unit_pick_s: Seconds = Field(description="time in s for which a unit occupies the robot")
-    activation: Count = Field(description="rank in which stations are switched on, from 1")
+    activation: Count = Field(
+        description="position in the order in which stations are activated, from 1"
+    )
 
 
 class ExplicitReplenishmentStation(Strict):
@@ -63,7 +65,9 @@ class ExplicitReplenishmentStation(Strict):
     bundle_transfer_s: Seconds = Field(
         description="time in s for which a bundle occupies robot and station"
     )
-    activation: Count = Field(description="rank in which stations are switched on, from 1")
+    activation: Count = Field(
+        description="position in the order in which stations are activated, from 1"
+    )
 
 
 class ExplicitOtherStation(Strict):
