@@ -376,7 +376,7 @@ FILES: tuple[Mapped, ...] = (
     Mapped("orderplacementprogression.csv", "`orders.created_s`"),
     Mapped(
         "collisionprogression.csv",
-        "none: `collisions` counts them; `rmfs run --check` proves that there are none",
+        "none: `collisions` counts them; rmfs run --check proves that there are none",
     ),
     Mapped("tripscompleted.csv", "table trips, with distance and `trips.station`"),
     Mapped("traveleddistanceprogression.csv", "`series.distance_m`"),
