@@ -23,9 +23,8 @@ class Delays(Measure):
             f"{part}_share",
             REAL,
             "share",
-            f"Share of the turnover of all completed orders: {what}. Lines are followed by "
-            "their last unit, and orders count with the mean of their lines; empty if no order "
-            "was completed",
+            f"Share of the turnover of all completed orders: {what}. A line is timed by its "
+            "last unit, and an order by the mean over its lines; empty if no order was completed",
             better=LESS if part in _LESS else NEITHER,
         )
         for part, what in PARTS.items()

@@ -84,7 +84,7 @@ class Batteries(Measure):
             "robots_stranded",
             COUNT_OR_EMPTY,
             "robots",
-            "Number of times that a robot stopped with an empty battery until it was rescued",
+            "Number of times that a robot stopped because its battery level was below least_share",
             better=LESS,
         ),
         Column(

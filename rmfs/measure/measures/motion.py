@@ -30,7 +30,7 @@ class Motion(Measure):
             INTEGER,
             "trips",
             "Trips that ended: to a pod, to a station (ending at its queue zone), to a storage "
-            "place, or to a resting place",
+            "location, or to a resting place",
         ),
         Column(
             "trip_time_mean_s",
@@ -76,7 +76,7 @@ class RobotTime(Measure):
             "robot_busy_share",
             REAL,
             "share",
-            "Robot time with a task other than resting (pick, replenish, park, reposition)",
+            "Share of robot time with a task other than resting",
         ),
         Column("robot_moving_share", REAL, "share", "Robot time driving"),
         Column(

@@ -98,7 +98,12 @@ class Backlog(Measure):
         ),
         Column("open_orders_mean", REAL, "orders", "Time average of the open orders at stations"),
         Column("orders_created", INTEGER, "orders", "Orders that arrived"),
-        Column("order_redraws", INTEGER, "draws", "Drawn order lines that stock could not serve"),
+        Column(
+            "order_redraws",
+            INTEGER,
+            "draws",
+            "Order lines that were drawn again because stock could not serve them",
+        ),
         Column(
             "orders_short",
             INTEGER,

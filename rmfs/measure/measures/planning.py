@@ -23,7 +23,12 @@ class Planning(Measure):
             "plans",
             "Paths changed before they were completed",
         ),
-        Column("expansions", INTEGER, "labels", "Labels expanded by the path planner"),
+        Column(
+            "expansions",
+            INTEGER,
+            "labels",
+            "Labels (partial routes) expanded in searches for routes",
+        ),
         Column(
             "planning_wall_s",
             REAL,
