@@ -95,7 +95,11 @@ class Observed:
 
 
 class Observer:
-    """Callbacks of a run. Times are simulated seconds; entities are given by their index."""
+    """Callbacks of a run; by default each does nothing.
+
+    Times are simulated seconds. Orders and bundles are given as objects; robots, pods, stations,
+    SKUs and waypoints by index.
+    """
 
     def run_started(self, run: Observed) -> None:
         """Report that the world is built and stocked; nothing has happened yet."""

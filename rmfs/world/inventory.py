@@ -62,6 +62,8 @@ class Inventory:
         Units ordered since time zero, shape (K,).
     wanted
         Units ordered and not yet picked, bound or not, shape (K,).
+    total_capacity, stored_space, promised_space
+        Sums of `capacity`, `used` and `promised` over all pods, in space units.
     """
 
     def __init__(

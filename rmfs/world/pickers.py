@@ -110,7 +110,7 @@ class Staff:
     Parameters
     ----------
     given
-        Parameters of the scenario.
+        The scenario's parameters of pickers.
     pickers
         The pickers.
     unit_s

@@ -21,7 +21,7 @@ class PodFaces(PodParts):
     Parameters
     ----------
     given
-        Parameters of the scenario.
+        The scenario's parameters of faces.
     space_per_unit
         Space units per unit of each SKU, shape (K,).
     capacity

@@ -20,7 +20,7 @@ class PodLayers(PodParts):
     Parameters
     ----------
     given
-        Parameters of the scenario.
+        The scenario's parameters of layers.
     space_per_unit
         Space units per unit of each SKU, shape (K,).
     popularity

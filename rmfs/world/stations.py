@@ -172,7 +172,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
     Attributes
     ----------
     capacity
-        Maximum of `used`.
+        Maximum of `used`, in space units.
     used
         Space units of the bundles assigned, or reserved by ROA, whose transfer has not started.
     bundles

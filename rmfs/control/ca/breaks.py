@@ -69,5 +69,5 @@ class Breaks(ByLevel[BreaksParameters]):
         return given.until_share if is_break or share < given.below_share else 0.0
 
     def target_share(self) -> float:
-        """The upper level."""
+        """The upper level, `until_share`."""
         return self.parameters.until_share

@@ -70,7 +70,7 @@ class ByDemand(ByLevel[ByDemandParameters]):
         return given.until_share if share < low else 0.0
 
     def target_share(self) -> float:
-        """The upper level."""
+        """The upper level, `until_share`."""
         return self.parameters.until_share
 
     def is_calm(self) -> bool:

@@ -76,5 +76,5 @@ class Opportunity(ByLevel[OpportunityParameters]):
         return given.until_share if share < low else 0.0
 
     def target_share(self) -> float:
-        """The upper level."""
+        """The upper level, `until_share`."""
         return self.parameters.until_share

@@ -25,7 +25,7 @@ class Threshold(ByLevel[LevelParameters]):
         return given.until_share if share < given.below_share else 0.0
 
     def target_share(self) -> float:
-        """The upper level."""
+        """The upper level, `until_share`."""
         return self.parameters.until_share
 
 

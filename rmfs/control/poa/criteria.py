@@ -127,7 +127,7 @@ class Completable(Parameters):
 
 
 class InboundMatches(Parameters):
-    """Prefers orders with the most units on pods on their way to the station; near pods count more.
+    """Prefers orders with the most SKUs on pods on their way to the station; near pods count more.
 
     An order takes its units from the nearest pods that can spare them. Each pair of a pod and a SKU
     taken from it scores one point. If the units taken times the pod's distance in m are at most

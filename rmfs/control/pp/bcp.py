@@ -17,7 +17,7 @@ class BcpParameters(RollingParameters):
 
 
 class Bcp(PathPlanning[BcpParameters]):
-    """BCP: quickest paths in space, with collisions making waypoints more expensive; no waiting."""
+    """BCP: plans quickest paths in space; a collision makes its waypoint costlier for one robot."""
 
     parameters_model = BcpParameters
     planner = "bcp"

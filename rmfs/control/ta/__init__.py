@@ -23,11 +23,11 @@ class Consult(Protocol):
     """The questions that TA may ask the currently installed controllers of the other problems."""
 
     def serves(self, pod: int, station: int) -> bool:
-        """Ask PPS whether there is work for a pod at a station of either kind."""
+        """Ask PPS whether there is work for a pod at a pick or replenishment station."""
         ...
 
     def pod_for(self, robot: Robot, station: int) -> int:
-        """Ask PPS for a pod that an empty robot should bring to a station of either kind, or -1."""
+        """Ask PPS for a pod that an empty robot should bring to a station; -1 if there is none."""
         ...
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:

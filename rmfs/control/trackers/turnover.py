@@ -62,6 +62,13 @@ class TurnoverClasses(Tracker):
     Units are counted since the last classification, at first including past orders. Pods and SKUs
     are classified when a rule first requests the tracker, and again on the first access after the
     period, or the number of orders, has been reached; places keep their class.
+
+    Attributes
+    ----------
+    classes
+        Number of classes.
+    place_class
+        Class of each of the L storage places, shape (L,).
     """
 
     def __init__(self, view: View, parameters: TurnoverParameters) -> None:

@@ -53,6 +53,8 @@ class Zones(Tracker):
         Pick station to whose cache, or drop-off zone, each place belongs, or -1, shape (L,).
     cache_size
         Number of places of each cache, shape (S,); less than specified if there are not enough.
+    caches
+        Indices of the places of each cache, by station.
     """
 
     def __init__(self, view: View, parameters: ZoneParameters) -> None:
