@@ -54,7 +54,6 @@ ASKED: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "balance flow": ("balance", {}),
     "sequence greedy": ("sequence", {"method": "greedy"}),
     "sequence cp_sat": ("sequence", {"method": "cp_sat"}),
-    "sequence lns": ("sequence", {"method": "lns"}),
     "replenishment greedy": ("replenishment", {"method": "greedy"}),
     "replenishment rounding": ("replenishment", {"method": "rounding"}),
     "replenishment highs": ("replenishment", {}),
