@@ -37,7 +37,7 @@ def write_report(
     Parameters
     ----------
     columns
-        Columns of the report, each with a plot and an analysis of variance.
+        Columns of the report, each with plots and, where possible, an analysis of variance.
     baseline
         Arm with which all others are compared. Default: the first.
 
@@ -48,7 +48,7 @@ def write_report(
     Raises
     ------
     InputError
-        If there are no results, or the file cannot be written.
+        If there are no results, there is no such baseline, or the file cannot be written.
     """
     frame, note = one.rows()
     write_text(path, _render(one, frame, note, list(columns), baseline, confidence))

@@ -65,7 +65,7 @@ class Controller(Generic[P]):
 
     A controller is asked for decisions when one of its triggers occurs, or at a time of its own
     choice. It reads the view and changes nothing itself; its decisions are applied by the
-    simulation. A new controller is installed with `START`, at the beginning of a run or during it.
+    simulation. A controller that is installed during a run is asked at once.
 
     Attributes
     ----------

@@ -125,7 +125,7 @@ class Trigger(IntEnum):
     """Events that may call for a decision; the subject of each is given in brackets."""
 
     START = 0
-    """The run begins, or the controller has just been installed."""
+    """The run begins."""
     NEW_ORDER = 1
     """An order joined the backlog [Order]."""
     ORDER_ASSIGNED = 2

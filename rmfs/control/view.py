@@ -170,7 +170,7 @@ class View:
         return self.storage.version, *self.all_stations[station].work_version
 
     def has_open_work(self, station: int) -> bool:
-        """Whether a station has work, open requests or waiting bundles, without a pod under way."""
+        """Whether a station has requests, or bundles, for which no pod is under way."""
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:

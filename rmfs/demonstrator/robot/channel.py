@@ -48,13 +48,7 @@ class Channel:
         self._sent_us = self.heard_us = self.clock_us = now_us
 
     def send(self, message: Message) -> None:
-        """Queue a message for the other side.
-
-        Raises
-        ------
-        ProtocolError
-            If `MOST_WAITING` messages are unacknowledged.
-        """
+        """Queue a message; a ProtocolError if `MOST_WAITING` are unacknowledged."""
         if len(self._waiting) >= MOST_WAITING:
             raise ProtocolError(f"{MOST_WAITING} messages without acknowledgement")
         self._number += 1

@@ -126,7 +126,10 @@ class Hub:
         return inbox
 
     def send(self, name: str, message: Message) -> None:
-        """Send a message; without a session it is dropped, as a new session repeats the order."""
+        """Send a message, or drop it if there is no session.
+
+        When a robot's next session has begun, the server sends its unfinished order again.
+        """
         session = self._sessions.get(name)
         if session is not None and session.channel is not None:
             session.channel.send(message)

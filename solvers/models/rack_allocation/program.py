@@ -74,9 +74,9 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
 def together(data: RackAllocation) -> LinearProgram:
     """Formulate the programme aggregated over the stations, a relaxation with few columns.
 
-    For each cap d the largest over the stations is used, so that each row is implied by the sum of
-    the rows it replaces. If all stations have equally many slots, the relaxations of both
-    programmes have the same value.
+    Each SKU has one d (see the module), the largest of all stations, so that each row is implied by
+    the sum of the rows it replaces. If all stations have equally many slots, the linear relaxations
+    of this programme and that of `formulate` have the same value.
 
     Parameters
     ----------

@@ -47,5 +47,5 @@ def test_unknown_names_are_refused_with_the_known_ones() -> None:
     """A family, and a method of one."""
     with pytest.raises(ModelError, match="family: must be one of pile_on, "):
         family("pileon")
-    with pytest.raises(ModelError, match="method: must be one of cp_sat, columns, greedy"):
+    with pytest.raises(ModelError, match="method: must be one of cp_sat, columns, lns, greedy"):
         family("sequence").solve(None, "simplex")
