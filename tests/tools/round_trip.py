@@ -87,7 +87,7 @@ MORE: dict[str, dict[str, Any]] = {
 }
 """What is changed so that a set asks often, and small questions."""
 
-RUN_S, MOST_SEEDS = 600.0, 200
+RUN_S, MOST_SEEDS = 600.0, 300
 
 
 @dataclass
