@@ -17,7 +17,7 @@ Q = TypeVar("Q")
 D = TypeVar("D")
 
 BOUND_TOLERANCE = 1e-6
-"""Amount by which a bound may exceed the objective z due to rounding, relative to max(1, |z|)."""
+"""Largest excess of a bound over the objective z due to rounding, relative to ``max(1, |z|)``."""
 
 Plain = NDArray[Any] | int | float | str | bool | Sequence["Plain"]
 """A value in a solution. Solutions are sent between processes, recorded and replayed."""
