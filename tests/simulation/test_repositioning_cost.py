@@ -11,13 +11,10 @@ from rmfs.simulation.run import Simulation
 LIGHT = {"scenario.skus.count": 100, "scenario.skus.space_per_unit.value": 5.0}
 
 
-def questions_and_labels(robots: int) -> tuple[int, float]:
-    """Three tiers, so many robots on each, for two minutes: moves, and labels per question.
-
-    The planner looks at labels; every leg, failed or not, is a question.
-    """
+def crowded(layout: str, robots: int) -> Simulation:
+    """Two minutes of repositioning with many robots."""
     simulation = Simulation(
-        "study-tiers",
+        layout,
         "pp-minimal",
         set={
             **LIGHT,
@@ -29,6 +26,15 @@ def questions_and_labels(robots: int) -> tuple[int, float]:
         measured=False,
     )
     simulation.run()
+    return simulation
+
+
+def questions_and_labels(robots: int) -> tuple[int, float]:
+    """Three tiers, so many robots on each, for two minutes: moves, and labels per question.
+
+    The planner looks at labels; every leg, failed or not, is a question.
+    """
+    simulation = crowded("study-tiers", robots)
     counted = simulation.traffic.counters()
     questions = counted["plans"] + counted["replans"] + counted["plan_failures"]
     moves = simulation.deciding.statistics[Problem.REPOSITIONING].calls
@@ -66,17 +72,5 @@ def test_few_pods_are_looked_at_per_decision(
 
     monkeypatch.setattr(utility, "nearest_place", counted_place)
     monkeypatch.setattr(utility.Utility, "find", counted_find)
-    simulation = Simulation(
-        layout,
-        "pp-minimal",
-        set={
-            **LIGHT,
-            "layout.robots": robots,
-            "scenario.warmup_s": 0.0,
-            "scenario.duration_s": 120.0,
-            "controllers.repositioning.name": "utility",
-        },
-        measured=False,
-    )
-    simulation.run()
+    crowded(layout, robots)
     assert looked["decisions"] > 0
