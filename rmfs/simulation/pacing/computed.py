@@ -27,7 +27,7 @@ SECONDS_PER_UNIT = {
     "min_cost_flow": 7.73e-07,
     "rounding": 2.476e-05,
     "rule": 2.989e-07,
-    "scipy": 1.2e-08,
+    "scipy": 1.888e-09,
     "visits": 3.98e-09,
 }
 """Seconds per unit of work of each back end, as measured by `python -m tests.tools.calibrate` on an
@@ -42,7 +42,7 @@ SECONDS_PER_CALL = {
     "min_cost_flow": 0.0002342,
     "rounding": 0.001733,
     "rule": 0.0001915,
-    "scipy": 6.29e-05,
+    "scipy": 5.426e-05,
     "visits": 3.114e-05,
 }
 """Additional seconds per call, from the same measurement; 0 for other back ends."""

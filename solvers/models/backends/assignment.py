@@ -40,7 +40,8 @@ class Assigned(NamedTuple):
     bound
         Proven lower bound on the cost of every assignment.
     work
-        Number of entries of the table, the unit of work of the assignment back ends.
+        Number of entries read: those of the table, and those compared in each round of the search
+        for the bound. The unit of work of the assignment back ends.
     """
 
     column: NDArray[np.int64]
@@ -70,7 +71,8 @@ def assign(cost: NDArray[np.float64], solver: Solver = "scipy") -> Assigned | No
     column = _by_scipy(cost) if solver == "scipy" else _by_flow(cost)
     if column is None:
         return None
-    return Assigned(column, assignment_bound(cost, column), float(cost.size))
+    bound, compared = _dual(cost, column)
+    return Assigned(column, bound, float(cost.size + compared))
 
 
 def solve_by_assignment(
@@ -94,7 +96,8 @@ def solve_by_assignment(
 
     Returns
     -------
-    The optimal values, or status INFEASIBLE; work is the number of entries of the table.
+    The optimal values, or status INFEASIBLE; work is that of `Assigned`, or the number of entries
+    of the table if there is no assignment.
     """
     began = perf_counter()
     cost = table()
@@ -105,7 +108,7 @@ def solve_by_assignment(
         objective,
         bound=math.inf if assigned is None else assigned.bound,
         backend=solver,
-        work=float(cost.size),
+        work=float(cost.size) if assigned is None else assigned.work,
         began=began,
         built=built,
     )
@@ -157,13 +160,20 @@ def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> fl
     -------
     The dual value, rounded down.
     """
+    return _dual(cost, column)[0]
+
+
+def _dual(cost: NDArray[np.float64], column: NDArray[np.int64]) -> tuple[float, int]:
+    """Return the bound of `assignment_bound` and the number of entries compared for it."""
     rows = len(column)
     if not rows:
-        return 0.0
+        return 0.0, 0
     price = np.zeros(cost.shape[1])
     exchange = cost[:, column] - cost[np.arange(rows), column][:, np.newaxis]
     shortest = np.zeros(rows)
-    for _ in range(rows):
+    rounds = 0
+    while rounds < rows:
+        rounds += 1
         shorter = np.minimum(shortest, (shortest[:, np.newaxis] + exchange).min(axis=0))
         if np.array_equal(shorter, shortest):
             break
@@ -171,7 +181,7 @@ def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> fl
     price[column] = shortest
     value = (cost - price).min(axis=1)
     error = _TINY * (math.fsum(np.abs(value)) + math.fsum(np.abs(price)))
-    return math.fsum(value) + math.fsum(price) - error
+    return math.fsum(value) + math.fsum(price) - error, rounds * exchange.size
 
 
 def _by_scipy(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:

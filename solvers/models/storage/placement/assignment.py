@@ -33,7 +33,7 @@ def solve_by(data: Placement, solver: Solver) -> Solution[NDArray[np.int64]]:
 
     Returns
     -------
-    The place of each pod, shape (P,); work is the number of entries of the cost table.
+    The place of each pod, shape (P,); work is the number of table entries read.
     """
     return solve_by_assignment(
         lambda: data.cost_s, lambda column: column, lambda place: objective(data, place), solver

@@ -35,7 +35,7 @@ def solve_by(data: Matching, solver: Solver) -> Solution[NDArray[np.int64]]:
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); work is the number of entries of the cost table.
+    The robot of each task, or `LEFT`, shape (T,); work is the number of table entries read.
     """
     robots, tasks = data.travel_s.shape
 
