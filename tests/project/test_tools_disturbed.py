@@ -49,9 +49,9 @@ def test_a_panic_is_a_problem_of_its_run(monkeypatch) -> None:
 def test_it_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr(disturbed, "SITES", {"demonstrator": ("demonstrator", 20.0)})
     path = tmp_path / "runs.csv"
-    assert len(disturbed.drive(path, 1, float("inf"))) == 15
+    assert len(disturbed.drive(path, range(1), float("inf"))) == 15
     before = path.read_text()
-    rows = disturbed.drive(path, 2, float("inf"))
+    rows = disturbed.drive(path, range(2), float("inf"))
     assert len(rows) == 30 and path.read_text().startswith(before)
     assert disturbed.table(rows).splitlines()[1].startswith("demonstrator | 30 | 2 | ")
 
