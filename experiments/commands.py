@@ -79,7 +79,7 @@ def plan(
     arms: Annotated[bool, typer.Option("--arms", help="List all arms.")] = False,
     pilot: Annotated[bool, typer.Option(help="Make short runs to estimate the time.")] = True,
 ) -> None:
-    """Check a design: print the number of runs, the time, and everything that is wrong with it."""
+    """Check a design: print all its errors or, if there are none, its runs and their duration."""
     from rmfs.experiments.complete import may_grow
     from rmfs.experiments.design.stages import schedule
     from rmfs.experiments.results import assigned, failed_pairs

@@ -27,7 +27,7 @@ ARM_SIGN = "#"
 
 
 def numbers() -> list[str]:
-    """Return the columns to compare: the standard footprint, and known measures of users."""
+    """Return the numerical columns of the footprint, including those of registered measures."""
     columns = (*FOOTPRINT, *learnt())
     return [column.name for column in columns if column.is_number and column.name != "seed"]
 
@@ -38,7 +38,7 @@ NOT_INPUT = ("written", "machine", "check")
 
 @dataclass(frozen=True)
 class Side:
-    """One of the things compared.
+    """A run, an arm or a table that is compared.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Side:
     inputs
         Known inputs as dotted keys and values.
     note
-        Missing runs of its experiment; empty if there are none, or it is not an experiment.
+        Missing runs of its experiment; empty if no runs are missing or it is not an experiment.
     """
 
     name: str
@@ -67,12 +67,14 @@ class Comparison:
     inputs
         Differing inputs: `key`, `baseline`, `other`.
     outputs
-        One row per footprint column: `baseline`, `other` (means), `difference`, `low`, `high`,
-        `relative`, `p`. There is an interval only if there are several seeds.
+        One row per footprint column: `baseline` and `other` (means over the common seeds or, if
+        there are none, over all seeds), `difference` (`other` minus `baseline`) with the ends
+        `low` and `high` of its interval, `relative` (difference divided by baseline), and `p`.
+        Interval and `p` are nan if there is only one seed.
     pairs
         Number of seeds in common; 0 if the samples were treated as independent.
     identical
-        Whether all reproducible columns are equal.
+        Whether both sides have the same seeds and equal values in all reproducible columns.
     """
 
     baseline: Side
@@ -280,7 +282,7 @@ MAIN = (
 def chosen_columns(
     comparison: Comparison, columns: Sequence[str], *, everything: bool
 ) -> list[str]:
-    """Return the columns to show: the requested ones, all that differ, or the main ones.
+    """Return the requested columns; by default all that differ (`everything`) or the main ones.
 
     Raises
     ------

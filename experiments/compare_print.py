@@ -11,10 +11,11 @@ if TYPE_CHECKING:
     from rmfs.experiments.compare import Comparison
 
 ROUNDING = 1e-12
-"""Relative difference (absolute below 1) that counts as rounding error."""
+"""Largest difference that counts as rounding error: as a share of the larger of the two values, or
+absolute if both are below 1."""
 
 MOST_RELATIVE = 10.0
-"""Largest difference, in multiples of the baseline, that is shown in per cent of it."""
+"""Largest difference, in multiples of the baseline, that is also shown in percent of it."""
 
 
 def print_comparisons(found: list[Comparison], columns: list[str], *, everything: bool) -> None:

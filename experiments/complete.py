@@ -1,4 +1,4 @@
-"""Finds the missing runs of an experiment."""
+"""Search for the missing runs of an experiment."""
 
 from __future__ import annotations
 

@@ -14,14 +14,14 @@ def optional(module: str, extra: str, purpose: str) -> Any:
     Parameters
     ----------
     extra
-        The extra of rmfs that contains it.
+        The extra of rmfs (such as `dask` in `rmfs[dask]`) that contains the package.
     purpose
         What the module is needed for.
 
     Raises
     ------
     InputError
-        If it is not installed.
+        If the package is not installed.
     """
     try:
         return importlib.import_module(module)

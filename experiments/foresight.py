@@ -1,9 +1,10 @@
-"""The value of perfect foresight: storage places and robots of a run, chosen in retrospect.
+"""The value of perfect foresight: storage locations and robots of a run, chosen in retrospect.
 
 The visits of pods to stations, and the times at which pods are lifted and set down, are kept as in
-the run. With this knowledge, PSA could have chosen other storage places to reduce loaded driving,
-and TA other robots to reduce empty driving. Each problem has a proven bound; the driving of the run
-in excess of it is the most that a better PSA or TA could have saved with everything else unchanged.
+the run. With this knowledge, PSA could have chosen other storage locations to reduce loaded
+driving, and TA other robots to reduce empty driving. Each problem has a proven lower bound on the
+driving time. The driving time of the run in excess of the bound is the most that a better PSA or TA
+could have saved with everything else unchanged.
 """
 
 from __future__ import annotations
@@ -32,10 +33,11 @@ TOLERANCE_S = 0.001
 
 
 class Foresight(Measure):
-    """Possible savings in a run by better storage places, or by a better choice of robots.
+    """Possible savings in a run by better storage locations, or by a better choice of robots.
 
-    Only for runs on one tier without repositioning. Savings are shares of the time of all robots;
-    each is an upper bound on what the decision could save if nothing else changed.
+    The measure is valid only for runs on one tier without repositioning. Savings are given in s and
+    as shares of the time of all robots. Each is an upper bound on what the decision could save if
+    nothing else changed.
     """
 
     columns = (
@@ -70,7 +72,7 @@ class Foresight(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Solve both problems and return the savings; stays are solved to proven optimality."""
+        """Solve both problems and return the savings, relative to proven lower bounds."""
         trips, times = run.tables["trips"], run.recorder.traffic
         data, stored_s = stays_of(run, trips, times)
         saved_s = max(stored_s - solve_stays(data, "highs").bound, 0.0)
@@ -87,17 +89,18 @@ class Foresight(Measure):
 
 
 def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[Stays, float]:
-    """Return the stays of pods at storage places in a run, and their cost, in s.
+    """Return the stays of pods at storage locations in a run, and the time of their drives, in s.
 
-    A place is reserved for a pod from the start of the drive there until a robot begins to lift the
-    pod again. Its cost is the time of the drives from the last station and to the next one. A pod
-    that stood at its place before the first trip keeps it, at no cost, until it is lifted; the
-    places of pods that never moved are left out.
+    A storage location is reserved for a pod from the start of the drive there until a robot begins
+    to lift the pod again. The cost of this stay is the time of the drive from the station before it
+    and of the drive to the station after it. A pod that stands at a storage location at the
+    beginning stays there, at no cost, until it is first lifted; the storage locations of pods that
+    never move are left out.
 
     Parameters
     ----------
     run
-        The run, which provides the layout, its end, and the final places of pods.
+        The run, which provides its layout, its end, and the final positions of pods.
     trips
         Table of trips of the run.
     times
@@ -105,7 +108,8 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 
     Returns
     -------
-    The stays, with one zone per place, and the unhindered time of these drives in the run.
+    The stays, with one zone per storage location; and the total unhindered time, in s, of the
+    drives to and from the storage locations that were used in the run.
     """
     loaded = trips[trips["loaded"]]
     lifts = {
@@ -153,9 +157,9 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int]:
     """Return the empty driving of a run, and the minimum over all choices of robots, in s.
 
-    Every pod is lifted at the same place and no later than in the run, by a robot that was free
-    before. A robot becomes free at the place and time at which its last trip that was not to a pod
-    ended.
+    In every choice considered, every pod is lifted at the same place and no later than in the run,
+    by a robot that was free before. A robot becomes free when and where a trip to a pod begins in
+    the run.
 
     Parameters
     ----------
@@ -166,7 +170,8 @@ def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int
 
     Returns
     -------
-    Unhindered time of the trips to pods in the run, the minimum possible, and the number of trips.
+    Unhindered time of the trips to pods in the run, and its minimum over all choices, in s; and the
+    number of these trips.
     """
     to_pod = trips[trips["kind"] == "to_pod"].sort_values("start_s")
     arrival_s = to_pod["end_s"].to_numpy()

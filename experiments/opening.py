@@ -28,7 +28,7 @@ class Opened:
     Attributes
     ----------
     name
-        As the user named it.
+        The design or folder as the user specified it.
     """
 
     name: str

@@ -75,7 +75,7 @@ def chosen_table(
 
 
 def goals(given: list[str]) -> dict[str, Goal]:
-    """Parse the goals of columns."""
+    """Return the goals given as `COLUMN=more` or `COLUMN=less`, by column."""
     found: dict[str, Goal] = {}
     for text in given:
         column, _, goal = text.partition("=")

@@ -33,8 +33,8 @@ class Case:
     Attributes
     ----------
     duration_s
-        Simulated seconds; the warm-up is 0, so that building the first heuristic tables is
-        included.
+        Simulated seconds. There is no warm-up, so the time to build the first tables for the search
+        of routes is included.
     """
 
     layout: str

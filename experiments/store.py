@@ -1,9 +1,9 @@
 """The folder of an experiment's results.
 
-    plan.json       the design, its arms and the hashes of its inputs runs/           the dataset:
-    one small Parquet file per run, merged from time to time <table>/        a Parquet file a run
-    for each table that is kept failures/       a JSON file with the traceback for each run that
-    failed
+- `plan.json`: the design, its arms and the hashes of its inputs
+- `runs/`: the dataset, one small Parquet file per run; the files are merged from time to time
+- `<table>/`: for each table that is kept, one Parquet file per run
+- `failures/`: for each failed run, one JSON file with the traceback
 
 Every file is written completely or not at all, so the dataset can be read at any time. Runs are
 stored under their key, a hash of everything that determines them. Only duplicates are ever deleted:
@@ -39,7 +39,7 @@ MANY = 256
 """Number of files of single runs that are merged into one."""
 
 FEW = 16
-"""Number of these files that are read at a time."""
+"""Number of files of single runs that are read at a time."""
 
 ORIGIN = ("run", "arm_digest", "replication", "arm", "design", "design_hash")
 """Columns of a stored row, before the footprint, that identify the run."""
@@ -152,7 +152,7 @@ class Store:
     # reading
 
     def rows(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
-        """Read all rows, each run once; the frame is empty while there are none.
+        """Read all rows, one per run; the frame is empty if there are none.
 
         Parameters
         ----------

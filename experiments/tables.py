@@ -35,7 +35,7 @@ COLUMNS = ("units_per_h", "orders_per_h", "units_per_visit", "distance_per_unit_
 """Columns shown by default."""
 
 ROUNDING = 1e-12
-"""Smaller absolute values count as 0."""
+"""Absolute value below which a number counts as 0."""
 
 HALF = "±"
 UNITS = {column.name: column.unit for column in FOOTPRINT}
@@ -305,7 +305,7 @@ def rows_frame(rows: Mapping[str, Mapping[tuple[str, str], float]], name: str) -
     Parameters
     ----------
     rows
-        For each row name, its cells by measure and statistic; the first row has all columns.
+        For each row name, its cells by measure and statistic. The first row determines the columns.
     name
         Heading of the row names.
     """

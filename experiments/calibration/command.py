@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.tables import Table
 
 NOT_FOUND = 1
-"""Exit code if the runs did not suffice."""
+"""Exit code if the maximum number of runs was too small to find a level."""
 
 Range = tuple[float, float]
 
@@ -66,11 +66,11 @@ def calibrate(
     jobs: Jobs = None,
     file: FileOption = None,
 ) -> None:
-    """Find the arrival rate at which a share of orders is on time, with a stated confidence.
+    """Find the arrival rate at which a given share of orders is on time, with a stated confidence.
 
-    Instead, any numerical parameter and any column of the footprint can be chosen, if the column
-    rises or falls monotonically with the parameter. The command can be interrupted and repeated.
-    Exits with code 1 if the runs did not suffice.
+    Any other numerical parameter and any other column of the footprint can be chosen, if the mean
+    of the column rises or falls monotonically with the parameter. The command can be interrupted
+    and repeated. Exits with code 1 if the maximum number of runs was too small.
     """
     from rmfs.config import parse_override
     from rmfs.experiments.calibration.procedure import Goal

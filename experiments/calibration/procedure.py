@@ -4,12 +4,13 @@ r"""Find where a noisy, monotone response has a given mean: a root is estimated,
    via retrospective approximation, IIE Transactions 33(3), 259-275). The mean over a few seeds,
    which are the same at every level, is a deterministic function of the level. Its root is found by
    the Illinois variant of regula falsi and serves as a guess.
-2. *Test*: fresh seeds at the guess, enough for an interval whose half width is half the tolerance,
-   by the two-stage rule of Stein (1945, A two-sample test for a linear hypothesis whose power is
-   independent of the variance, Annals of Mathematical Statistics 16(3), 243-258), which is exact if
-   runs are normally distributed. The guess stands if the whole interval lies within the tolerance.
-   Otherwise the next guess is where a monotone function fitted to the means so far (isotonic
-   regression) meets the target; it is tested with new seeds.
+2. *Test*: the guess is simulated with new seeds. The two-stage rule of Stein (1945, A two-sample
+   test for a linear hypothesis whose power is independent of the variance, Annals of Mathematical
+   Statistics 16(3), 243-258) determines how many are needed for a confidence interval whose half
+   width is half the tolerance; it is exact if runs are normally distributed. The guess is accepted
+   if the whole interval lies within the tolerance. Otherwise a monotone function is fitted to the
+   means so far (isotonic regression), and the level at which it meets the target is the next guess,
+   which is tested with further seeds.
 
 The k-th test may err with probability :math:`\alpha / 2^k`, so all tests together err with
 probability at most :math:`\alpha = 1 - confidence`. This bounds the probability that the mean at
@@ -40,7 +41,7 @@ DIGITS = 4
 """Significant digits of a level."""
 
 MOST_LOOKS = 12
-"""Maximum number of levels evaluated by the search, besides both ends."""
+"""Maximum number of levels that the search evaluates, in addition to both ends of the range."""
 
 DOUBLINGS = 3
 """Number of times the seeds are doubled before the target is assumed to lie outside the range."""
@@ -61,8 +62,8 @@ class Goal:
     confidence
         Probability with which the mean is within the tolerance. Default 0.95.
     search_seeds
-        Number of seeds at each level of the search; more if the ends cannot be distinguished.
-        Default 4.
+        Number of seeds at each level of the search. It is doubled as long as the target does not
+        lie between the means at both ends of the range. Default 4.
     test_seeds
         Number of seeds in the first stage of a test. Default 10.
     most_runs
@@ -109,7 +110,8 @@ class Step:
     first_seed, seeds
         First seed and number of consecutive seeds.
     mean, half_width
-        Mean of the response, and half width of its interval; nan except in a test.
+        Mean of the response, and half width of its confidence interval. The half width is nan
+        except in a test.
     verdict
         The conclusion, in words.
     """
@@ -298,8 +300,8 @@ def calibrate(goal: Goal, respond: Respond, watch: Callable[[Step], None] = prin
     goal
         The goal.
     respond
-        Function of a level and seeds that returns the response of each seed, shape (N,). Its mean
-        must be monotone in the level.
+        Function of a level and seeds that returns the response of each seed, shape (N,). The
+        expected response must be monotone in the level.
     watch
         Function called with every step as soon as it has been evaluated.
 

@@ -46,7 +46,7 @@ class Runs:
     Raises
     ------
     InputError
-        If there is no such column, or it is not numeric.
+        If there is no such column, or it is not numeric, or not reproducible (a wall time).
     """
 
     base: Mapping[str, Any]

@@ -83,10 +83,10 @@ class Level:
     name
         The part of the arm's name that stands for the level.
     raw
-        For each column, the values by which exclusions may refer to it.
+        For each column, the values by which exclusions may refer to this level.
     of_grid
-        Whether it is a level of a grid, whose arms are named with the factor. An arm of a list is
-        named by the level alone.
+        Whether the level belongs to a grid: then the arm's name contains the factor and the level.
+        The name of an arm of a list contains the level alone.
     """
 
     shown: dict[str, Any]
@@ -97,12 +97,12 @@ class Level:
 
 
 def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
-    """Return the arms of a design in the order of its factors, and what is wrong with them.
+    """Return the arms of a design in the order of its factors, and the errors found in them.
 
     Parameters
     ----------
     folder
-        The design's folder: files are looked for there first.
+        The design's folder, in which files are sought first.
     """
     problems: list[str] = []
     factors = [_grid_factor(key, levels, problems) for key, levels in design.factors.items()]
@@ -129,7 +129,7 @@ def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
 
 
 def factor_names(keys: Iterable[str]) -> dict[str, str]:
-    """Return a short name for each factor: the fewest last words of its path that are unique.
+    """Return a short name for each factor: as few words from the end of its path as are unique.
 
     A final `name` (of a rule) is left out: `controllers.psa.name` becomes `psa`.
     """

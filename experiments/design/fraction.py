@@ -4,9 +4,9 @@ Command: `python -m rmfs.experiments.design.fraction`.
 
 A full factorial of many rules has thousands of arms. For a screening, far fewer suffice to estimate
 the effects of the factors, if their levels are well balanced. The arms chosen here maximise the
-determinant of the information matrix of the main effects (D-optimality) by exchanging arms, best
-exchange first (Fedorov 1972). The result is written to a file, so that the arms of a study do not
-depend on the machine.
+determinant of the information matrix of the main effects (D-optimality): starting from a random
+choice, the best exchange of a chosen arm for another one is made repeatedly (Fedorov 1972). The
+result is written to a file, so that the arms of a study do not depend on the machine.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.design.arms import Arm
 
 EXCHANGES = 10_000
-"""Maximum number of exchanges, never reached in practice, as each one improves the design."""
+"""Maximum number of exchanges. In practice, no exchange improves the choice long before that."""
 
 IMPROVEMENT = 1e-9
 
@@ -61,7 +61,7 @@ def main_effects(levels: Sequence[Sequence[object]]) -> NDArray[np.float64]:
 
 
 def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]:
-    """Choose rows of a model matrix.
+    """Choose rows of a model matrix that together are D-optimal, by exchanges.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]
 
 
 def efficiency(rows: NDArray[np.float64], chosen: Sequence[int]) -> float:
-    """Return the D-efficiency of the choice: information per arm, relative to the full grid."""
+    """Return the D-efficiency of chosen rows: information per arm, relative to the full grid."""
     part, whole = rows[list(chosen)], rows
     parameters = rows.shape[1]
     share = np.linalg.slogdet(part.T @ part)[1] - np.linalg.slogdet(whole.T @ whole)[1]

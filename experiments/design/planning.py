@@ -106,7 +106,11 @@ class Plan:
         raise InputError(f"{name}: no such arm; arms: {shown}{more}")
 
     def seed(self, arm: Arm, replication: int) -> int:
-        """Return the seed of a run: `replication` with common random numbers, else its own."""
+        """Return the seed of a run.
+
+        With common random numbers, it is `replication`; otherwise, it is derived from `replication`
+        and the digest of the arm.
+        """
         if self.design.common_random_numbers:
             return replication
         entropy = [replication, int(arm.digest[:16], 16)]
@@ -146,7 +150,7 @@ class Plan:
             raise PlanError(self.source, self.problems)
 
     def save(self, folder: Path) -> None:
-        """Write the plan to the folder of the results, which are read with it."""
+        """Write the plan to the folder of the results; reading the results requires it."""
         told = {
             "format": FORMAT,
             "hash": self.hash,

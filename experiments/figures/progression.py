@@ -1,4 +1,4 @@
-"""Progression plot: a measure over time, as mean over the seeds with a band (paper, figure 5a)."""
+"""Progression plot: a measure over time, as the mean over the seeds with a confidence band."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def progression(
     bin_s
         Time covered by one point, in s. Default: an hour.
     label
-        Legend entry, with the placeholder `{arm}`.
+        Legend entry, in which `{arm}` stands for the name of the arm.
     style
         Line style.
     """

@@ -22,7 +22,7 @@ EFFORT = ("units_per_visit", "orders_per_visit", "distance_per_unit_m", "distanc
 SHARES = tuple(f"{kind}_decision_share" for kind in ("optimiser", "heuristic", "stale", "failed"))
 COLUMNS = (*RATES, "station_share", *EFFORT, "order_turnover_median_s")
 START = ", start rule"
-"""Suffix of the name of controllers whose start rule decides instead of the solver."""
+"""Suffix of the names of arms in which the start rule of an optimiser decides, without a solver."""
 DECISION_S = "optimiser_wall_median_s"
 LEAST_SHARE = 0.9
 """Minimum share of decisions by optimisers for a run to count as one with optimisers."""
@@ -54,7 +54,10 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
 
 
 def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = COLUMNS) -> Table:
-    """Return the means of every group of runs with intervals, decision times, and shares.
+    """Return the means of every group of runs with intervals, decision times, shares and bounds.
+
+    The shares are those of decisions by optimisers and by start rules, and of stale and of failed
+    answers.
 
     Parameters
     ----------
@@ -160,7 +163,7 @@ def publish_added(
     name: str,
     columns: Sequence[str] = (*RATES, *EFFORT),
 ) -> None:
-    """Publish `of_optimiser` as `name`-optimiser, if the design has start rules."""
+    """Publish the table `of_optimiser` as `name`-optimiser, if there are arms with start rules."""
     if frame[CONTROLLERS].str.endswith(START).any():
         study.publish(of_optimiser(frame, groups, columns), f"{name}-optimiser", columns)
 
@@ -180,7 +183,7 @@ def _percent(
 def too_few(frame: pd.DataFrame) -> list[str]:
     """Return the names of arms with a run in which optimisers made too few decisions.
 
-    Controllers that do not use optimisers have no shares and are skipped.
+    Runs without an optimiser are skipped.
     """
     asked = frame[frame["optimiser_calls"] > 0]
     return sorted(asked.loc[asked["optimiser_decision_share"] < LEAST_SHARE, "arm"].unique())

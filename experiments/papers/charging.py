@@ -4,12 +4,12 @@ The designs `charging` and, with `--large`, `charging-large` run fleets of diffe
 default and the large site: without batteries, with plug-in places, with battery swap, and with
 queue waypoints that charge waiting robots. The study publishes units per hour, the robots needed
 for 95 % of the capacity of the pick stations (interpolated between fleets, seed by seed), and how
-many more these are than without batteries. `--rules` compares the rules of CA and the optimiser
-with robots that need no energy, and the optimiser with its start rule, paired by seed. It uses the
-design `charging-rules` or, with `--demand`, `charging-demand`, in which periods of high and low
-demand alternate. For comparison, Zou et al. (2018, doi 10.1016/j.ejor.2017.12.008) report more than
-15 % more robots with battery recovery than without, and that swapping is up to 4.88 % better than
-plug-in charging.
+many more these are than without batteries. `--rules` compares every rule of charge assignment (CA)
+and its optimiser with robots that need no energy, and with the rule `threshold`, paired by seed. It
+uses the design `charging-rules` or, with `--demand`, `charging-demand`, in which periods of high
+and low demand alternate. For comparison, Zou et al. (2018, doi 10.1016/j.ejor.2017.12.008) report
+more than 15 % more robots with battery recovery than without, and that swapping is up to 4.88 %
+better than plug-in charging.
 """
 
 from __future__ import annotations
@@ -47,18 +47,21 @@ START_RULE = "threshold"
 
 
 def robots_for(robots: Sequence[float], share: Sequence[float], enough: float = ENOUGH) -> float:
-    """Return the fleet size that reaches a share, interpolated between fleets.
+    """Return the fleet size that reaches a share of the stations' capacity, by interpolation.
 
     Parameters
     ----------
     robots
         Sizes of fleets, ascending.
     share
-        Share that each reaches, made nondecreasing by a running maximum to reduce noise.
+        Share that each fleet reaches. A running maximum is used, so that noise cannot make it
+        decrease.
+    enough
+        Share to be reached.
 
     Returns
     -------
-    The fleet size; nan if the smallest fleet already reaches the share, or no fleet does.
+    The fleet size; nan if the smallest fleet already reaches this share, or no fleet does.
     """
     reached: NDArray[np.float64] = np.maximum.accumulate(np.asarray(share, np.float64))
     if reached[0] >= enough or reached[-1] < enough:
@@ -69,7 +72,7 @@ def robots_for(robots: Sequence[float], share: Sequence[float], enough: float = 
 
 
 def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
-    """Return the robots needed for each kind of recovery, and the difference to no recovery.
+    """Return the robots needed with each kind of recovery: number, and percent more than without.
 
     Parameters
     ----------

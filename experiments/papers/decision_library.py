@@ -2,7 +2,7 @@
 
 With `--time`, methods are timed on the library (`rmfs decisions profile`, question by question) and
 the rows are published; without it, all tables and pictures are made from the published rows.
-Families whose questions are assignments or flows are left out, as they are always solved to
+Families whose questions are assignment or flow problems are left out, as these are always solved to
 optimality.
 """
 
@@ -55,7 +55,7 @@ TIMED: dict[str, dict[str, float]] = {
     "sequence": {"greedy": 1, "lns": 16384, "columns": 1.024, "cp_sat": 0.512},
     "replenishment": {"greedy": 1, "rounding": 1, "cp_sat": 0.512, "highs": 4},
 }
-"""Methods to time, each with its largest limit of work."""
+"""Methods to time by family, each with its largest limit of work (in the unit of the method)."""
 
 RATIOS = [2.0 ** (step / 4) for step in range(33)]
 SECONDS = [10.0 ** (step / 8 - 3) for step in range(33)]
@@ -102,7 +102,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def state(known: pd.DataFrame) -> pd.DataFrame:
-    """Count proven questions by family and size, and return the gaps of the others.
+    """Return counts of questions and of proven optima, and gaps, by family and size.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def state(known: pd.DataFrame) -> pd.DataFrame:
 
 
 def online(library: Library) -> pd.DataFrame:
-    """Compare the answers given in the runs, within the controllers' limits, with the best known.
+    """Compare the answers given in the runs, under the limits of controllers, with the best known.
 
     Parameters
     ----------

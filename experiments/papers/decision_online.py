@@ -1,7 +1,8 @@
-"""Questions of the library asked again with the default search of controllers, and with others.
+"""Questions of the library, answered by the default search of controllers and by other searches.
 
-Each question is asked as in its run, from the plan that the controller had, but with the method and
-limits of a setting. Published: the distance from the best known value, and the processor time.
+Each question is answered as in its run, from the plan that the controller had, but with the method
+and limits of a setting. The study publishes the primal gap to the best known value, and the
+processor time.
 """
 
 from __future__ import annotations
@@ -76,11 +77,11 @@ SETTINGS: Mapping[str, Mapping[str, Callable[[Decision], dict[str, Any]]]] = {
         "column generation, 0.6 s": _routed("columns", 0.6),
     },
 }
-"""What is asked differently, by family and name of the setting."""
+"""Functions that return method and limits of a setting, by family and name of the setting."""
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Ask the questions and publish the table."""
+    """Answer the questions under all settings and publish the table."""
     made = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     made.add_argument("--library", type=Path, default=LIBRARY, help="folder of the library")
     made.add_argument("--published", type=Path, default=PUBLISHED, help="folder of tables")
@@ -92,7 +93,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def answered(library: Library, sizes: tuple[str, ...]) -> Iterator[dict[str, Any]]:
-    """Yield the gap and the time of each question under each setting.
+    """Yield the primal gap and the processor time (s) of each question under each setting.
 
     Parameters
     ----------
@@ -123,7 +124,7 @@ def answered(library: Library, sizes: tuple[str, ...]) -> Iterator[dict[str, Any
 
 
 def compared(rows: pd.DataFrame) -> pd.DataFrame:
-    """Summarise gaps and times by family, setting and size.
+    """Return median and largest gap, and median processor time, by family, setting and size.
 
     Parameters
     ----------

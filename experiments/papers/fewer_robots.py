@@ -95,7 +95,7 @@ def picture(
     Parameters
     ----------
     clairvoyant
-        Bounds by fleet size, drawn instead of those of the runs.
+        Upper bounds on units per hour by fleet size, drawn instead of the bounds of the runs.
     """
     path = study.place(name)
     with saving(path, 6.0, 4.0) as figure:

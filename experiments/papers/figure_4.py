@@ -1,4 +1,4 @@
-"""Figure 4: the default layout with two replenishment and two pick stations (the paper, 2018).
+"""Figure 4 of Merschformann, Xie and Li (2018): a layout with two stations of each kind.
 
 Nothing is simulated: the picture is drawn from the generator's parameters, and its provenance
 contains the counts of the layout.

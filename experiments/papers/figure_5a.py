@@ -1,7 +1,7 @@
 """Figure 5a: a PSA rule exchanged in the middle of a day (Merschformann, Xie, Li 2018).
 
-The paper shows one run of 24 h in which random storage is replaced by nearest storage: the robots
-drive less, and more orders are picked immediately. Here ten seeds are run on a layout of the size
+The paper shows one run of 24 h in which random storage is replaced by nearest storage: from then
+on, the robots drive less and complete more orders. Here ten seeds are run on a layout of the size
 as RAWSim-O's MaTiMilli, together with arms that keep either rule. The effect of the exchange is the
 difference in differences, paired by seed: second half minus first half, with the exchange minus
 without it.
@@ -63,7 +63,7 @@ def differences(rated: pd.DataFrame, confidence: float = 0.95) -> pd.DataFrame:
     Returns
     -------
     Means of the four combinations of arm and half, the difference in differences with its interval,
-    and the same relative to the arm without exchange (`relative`).
+    and its ratio to the mean of the arm without exchange in the second half (`relative`).
     """
     rows = {}
     for column in COLUMNS:

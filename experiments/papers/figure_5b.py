@@ -54,7 +54,7 @@ def areas(layout: Layout) -> NDArray[np.str_]:
 
 
 def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
-    """Return waypoints, visits per waypoint and shares in percent, per seed and area.
+    """Return waypoints, visits per waypoint, and shares of visits and waiting, per seed and area.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
     frame
         Results of a design with the factor `layout.robots`.
     rule
-        The other factor, at each of whose levels fleets are compared.
+        The other factor; fleets are compared at each of its levels.
     column
         The measure. Default: units per hour.
 

@@ -1,9 +1,9 @@
-"""An upper bound on the value of storage places and the choice of robots, with perfect foresight.
+"""Upper bounds on the savings by storage locations and choice of robots, with perfect foresight.
 
 Models for PSA and TA cannot save more than a decision with perfect knowledge of the future. After
 each run of the default rules, two problems are solved to proven optimality: with the same visits at
-the same times, which storage places would have minimised loaded driving, and which robots empty
-driving? This takes about 0.1 CPU hours.
+the same times, which storage locations would have minimised loaded driving? And which robots would
+have minimised empty driving? This takes about 0.1 CPU hours.
 """
 
 from __future__ import annotations

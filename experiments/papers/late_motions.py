@@ -37,7 +37,9 @@ def wide(frame: pd.DataFrame, robots: int, column: str = "units_per_h") -> pd.Da
 
 
 def losses(frame: pd.DataFrame) -> Table:
-    """Return the loss of units per hour by fleet and kind of lateness, in percent.
+    """Return units per hour by fleet and kind of lateness, and their change in percent.
+
+    The change is relative to perfect execution, and negative if fewer units are picked.
 
     Parameters
     ----------

@@ -1,11 +1,11 @@
 """Comparison of look-ahead and trained linear rules with the other rules.
 
-There are four regimes of the small site, with seeds not used in training; with `--sites`, three
-regimes of the default and the large site, one of them with look-ahead. Every arm is compared with
-the default rules, from which each of them starts, and with the best rule of its regime. The measure
-is units picked if there is always a backlog, and late orders if orders arrive over time. p values
-are corrected by Holm's method over all arms of a regime. The study takes about 0.15 CPU hours, with
-`--sites` 0.2.
+The study has four regimes of the small site, with seeds not used in training. With `--sites`, it
+has three regimes of the default and the large site, one of them with look-ahead. Every arm is
+compared with the default rules, from which each of them starts, and with the best rule of its
+regime. The measure is units picked if there is always a backlog, and late orders if orders arrive
+over time. p values are corrected by Holm's method over all arms of a regime. The study takes about
+0.15 CPU hours, with `--sites` 0.2.
 """
 
 from __future__ import annotations
@@ -51,7 +51,9 @@ def best_rule(runs: pd.DataFrame, goal: str) -> str:
 
 
 def compared(frame: pd.DataFrame) -> Table:
-    """Return means, and differences to the default and the best rule, by regime and arm.
+    """Return means, and gains over the default rules and the best rule, by regime and arm.
+
+    A gain is positive if more units are picked or, with arrivals, fewer orders are late.
 
     Parameters
     ----------

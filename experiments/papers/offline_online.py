@@ -1,9 +1,9 @@
-"""The value of better solutions of questions in the warehouse, by family.
+"""The effect of better answers to questions of the library on the warehouse, by family.
 
 Every arm is a method with its limit of work. Its offline gap is the mean primal gap to the best
-known value over the library's questions of its family, answered as the controller would answer
-them. Online, it is simulated with the same seeds as the other arms of the family. If lower gaps
-come with more units, fewer late orders and less driving, the objective is a good proxy.
+known value over the library's questions of its family, answered as the controller of the arm would
+answer them. Online, it is simulated with the same seeds as the other arms of the family. If lower
+gaps come with more units, fewer late orders and less driving, the objective is a good proxy.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ ASKED: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "replenishment rounding": ("replenishment", {"method": "rounding"}),
     "replenishment highs": ("replenishment", {}),
 }
-"""Family of each arm of the design, and its changes to the settings of a question."""
+"""For each arm of the design: its family, and its changes to the settings of a question."""
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -156,9 +156,10 @@ def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
 
     Returns
     -------
-    Rank correlation per family and measure, where the measure is reduced by its mean over the
-    family's arms with the same seed; and the number of arms. With two arms it shows only the sign,
-    and its consistency over seeds.
+    One row per family: the number of arms, their largest gap, and the rank correlation of each
+    measure with the gap. Before, the mean of the measure over the family's arms with the same seed
+    is subtracted. With two arms, the correlation shows only the sign of the effect, and whether it
+    is the same for all seeds.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     of = frame[SOLVER].map(lambda arm: ASKED[arm][0])

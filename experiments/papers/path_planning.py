@@ -51,7 +51,8 @@ class Instance:
     seeds
         Number of seeds for methods that are not slow.
     slow
-        Methods that need minutes for an hour, and their numbers of seeds; 0 leaves a method out.
+        Methods that need minutes of computation for a simulated hour, and their numbers of seeds; 0
+        leaves a method out.
     riding
         Whether pods may be stored on other tiers, so that robots ride elevators. The rules of
         RAWSim-O and of rmfs keep pods on their tier if possible.
@@ -111,8 +112,8 @@ INSTANCES = [
     ),
     Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 0}, riding=True),
 ]
-"""The layouts of the study. The initial phase, in which all robots are free, matters more in
-shorter simulations."""
+"""The layouts of the study, with RAWSim-O's figures. The initial phase, in which all robots are
+free, has more influence on figures of short simulations."""
 
 CAPTION = (
     "Path planning methods over an hour with a constant backlog: means over seeds with 95% "
@@ -128,9 +129,10 @@ def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tupl
     Parameters
     ----------
     runs
-        Its runs, one row each.
+        Runs of the method on the layout, one row each.
     difference
-        As returned by `rmfs.experiments.statistics.against`; None for the baseline method.
+        Row of the method in the result of `rmfs.experiments.statistics.against`; None for the
+        baseline method.
     """
     cells = {("seeds", ""): float(len(runs))}
     hours = runs["duration_s"] / 3600.0

@@ -1,9 +1,9 @@
 """The balance of work among pickers, and its cost.
 
 At the small site with arrivals there are two pickers who differ in speed and get tired. Rules that
-consider pickers are compared with pod match, and optimisers with balance in their objective with
-the same optimisers without it. Means are published, and for the optimisers also differences paired
-by seed.
+balance work or consider pickers are compared with the rules pod match and workload, and optimisers
+with balance in their objective are compared with the same optimisers without it. The study
+publishes means, and differences paired by seed.
 """
 
 from __future__ import annotations
@@ -30,11 +30,13 @@ COMPARED = (
     ("pile-on, balance", "pile-on"),
     ("planning, balance", "planning"),
 )
-"""The pairs of arms that are compared."""
+"""The pairs of arms that are compared: an arm and its baseline."""
 
 
 def differences(frame: pd.DataFrame) -> Table:
-    """Return the effects of rules and balance, paired by seed, in the unit of each column.
+    """Return the differences of the pairs `COMPARED`, paired by seed, in the unit of each column.
+
+    A difference is the arm minus its baseline.
 
     Parameters
     ----------

@@ -3,12 +3,13 @@
 Split orders are compared with whole ones (with the best controllers available for each), for put
 walls of different sizes, one minute and ten minutes away from the pick stations. The controllers
 split no more orders than the wall can hold or, in arms `always`, any number. The study publishes
-means; differences paired by seed; splitting within the capacity of the wall compared with the
-better of whole and always; the gain of optimisers over their start rules; and break-even points of
-splitting: the number of slots from which on it picks more units per hour; the seconds a packer may
-need for each additional tote until the work of pickers and packers per unit equals that of whole
-orders; and the transport time to the wall at which split orders are on average packed as early as
-whole ones. `--default` and `--large` select these sites.
+means; differences paired by seed; the gain of splitting within the capacity of the wall over the
+better of two alternatives (whole orders, and splitting regardless of the wall); and the gain of
+optimisers over their start rules. It also publishes three break-even points of splitting: the
+number of slots from which on splitting picks more units per hour; the packer's time per additional
+tote at which the work of pickers and packers per unit is the same as with whole orders; and the
+transport time to the wall at which split orders are on average packed as early as whole ones.
+`--default` and `--large` select these sites.
 """
 
 from __future__ import annotations
@@ -55,12 +56,12 @@ RESAMPLES = 2000
 
 
 def wall_of(label: str) -> tuple[float, float]:
-    """Return the slots of the wall (inf: any number) and the time to it, in s, of a level.
+    """Return number of slots (inf: any) and time to the wall, in s, from the label of a level.
 
     Raises
     ------
     ValueError
-        If the level's label contains none.
+        If the label describes no wall.
     """
     found = re.fullmatch(r"(\d+|any) slots, (\d+) s", label)
     if found is None:
@@ -79,18 +80,20 @@ def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
 
 
 def break_even(slots: Sequence[float], gain: Floats) -> float:
-    """Return the number of slots from which on the gain is positive, interpolated.
+    """Return the smallest number of slots with a gain, by linear interpolation.
 
     Parameters
     ----------
     slots
-        Slots of the walls, ascending; the last may be infinite and then counts as the one before.
+        Slots of the walls, ascending. The last may be infinite; if it is the only one with a gain,
+        the number before it is returned.
     gain
-        Gain with each wall, made nondecreasing in the slots to reduce noise.
+        Gain with each wall. A running maximum is used, so that noise cannot make the gain decrease
+        with the slots.
 
     Returns
     -------
-    The first of the slots if all gain; infinity if none does.
+    The number of slots: the first number given if all walls have a gain, and infinity if none has.
     """
     reached: Floats = np.maximum.accumulate(gain)
     if reached[0] > 0:
@@ -113,8 +116,8 @@ def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, fl
     runs
         Runs with one kind of demand.
     way_s
-        Time to the walls, in s; a wall with any number of slots is always included, as it never
-        blocks.
+        Time to the walls, in s. The wall with any number of slots is always included, whatever its
+        distance, because it is never full.
 
     Returns
     -------
@@ -137,8 +140,9 @@ def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[floa
     """Return the packer's time per additional tote at which splitting saves no work, in s.
 
     The result has one value per seed, nan if nothing was split. One picker works at each pick
-    station. Splitting saves the share `1 - whole / split` of their time, where `whole` and `split`
-    are units per hour, and costs a packer this time for every tote beyond an order's first.
+    station. Splitting saves the share `1 - whole / split` of the pickers' time, where `whole` and
+    `split` are units per hour. For every tote of an order beyond the first, it costs a packer the
+    time that is returned.
 
     Parameters
     ----------
@@ -152,10 +156,11 @@ def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[floa
 
 
 def tolerable_way_s(split: pd.DataFrame, whole: pd.DataFrame, way_s: float) -> pd.Series[float]:
-    """Return the time to the wall at which split orders are packed as early as whole ones, in s.
+    """Return the time to the wall at which splitting does not change the mean packing time, in s.
 
-    The result has one value per seed, on average over orders. Only split orders go to the wall; nan
-    if there were none. Negative if split orders are later even if the wall is next to the stations.
+    The result has one value per seed: nan if no order was split, and negative if orders would be
+    packed later even with a wall next to the stations. Averages are over all orders; only split
+    orders go to the wall.
 
     Parameters
     ----------
@@ -214,7 +219,9 @@ _PARTS = ("mean", HALF, "2.5 %", "97.5 %")
 
 
 def against_better(frame: pd.DataFrame) -> Table:
-    """Compare splitting within the wall's capacity with the better of whole and always.
+    """Return the gain of splitting within the wall's capacity over the alternatives, in percent.
+
+    The alternatives are whole orders, splitting regardless of the wall, and the better of the two.
 
     Parameters
     ----------

@@ -1,11 +1,11 @@
 """The cost of computing time: units per hour over the time limit of the optimiser.
 
 The study uses the small site with six robots and split orders. With `fixed` pacing, an answer takes
-effect after the whole limit, as if the solver had used all of it; with `work`, after the time that
-its work amounts to, as a solver stops when it has proven the optimum. Both are reproducible. The
-study takes about 0.1 CPU hours. `--wall` uses wall time at four limits, which is not reproducible
-and needs an otherwise idle machine (0.02 CPU hours). `--planning` uses TA planning with four
-robots, whose questions are large enough for a search to matter.
+effect after the whole time limit, as if the solver had used all of it. With `work`, it takes effect
+after the time that corresponds to the solver's work, which is less if the optimum is proven early.
+Both are reproducible. The study takes about 0.1 CPU hours. `--wall` uses wall time at four limits,
+which is not reproducible and needs an otherwise idle machine (0.02 CPU hours). `--planning` uses TA
+planning with four robots, whose questions are large enough for a search to matter.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def paced(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def picture(study: Study, frame: pd.DataFrame) -> Path:
-    """Draw units per hour over the limit, with one line per mode."""
+    """Draw units per hour over the time limit, with one line per mode of pacing."""
     path = study.place("price-of-thinking.png")
     with saving(path, 6.0, 4.0) as figure:
         ax = figure.subplots()

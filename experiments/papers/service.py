@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 DUE, DECIDED, SHARE = "due", "decided", "on_time_share"
 OPTIMISER = "optimiser"
 OTHERS = ("optimiser, work", "start rule", "without due times", "equal weights")
-"""Arms that are not rules, besides the optimiser."""
+"""Arms other than the optimiser that are not rules."""
 
 COLUMNS = (
     *(SHARE, "lateness_p95_s", "late_by_mean_s", "orders_overdue_end"),
@@ -78,7 +78,10 @@ BY_CLASS = ("on_time_urgent_share", "on_time_ordinary_share")
 
 
 def differences_by_class(frame: pd.DataFrame) -> Table:
-    """Return gains in on-time share in percentage points, for the first class and the others.
+    """Return the optimiser's gains in on-time share, for urgent and for ordinary orders.
+
+    Gains are in percentage points: over the best rule, the start rule, and the optimiser with equal
+    weights of all classes.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
-"""PSA and TA models compared with the rules nearest and balanced, one decision at a time.
+"""PSA and TA models compared with the rules nearest (PSA) and balanced (TA).
 
-The literature finds that storage places and tasks matter little for throughput (Merschformann,
-Lamballais, de Koster, Suhl 2019); they affect the driving. Therefore the fleet is small, so that
+Most arms replace only one of the two rules by a model. The literature finds that storage locations
+and tasks matter little for throughput (Merschformann, Lamballais, de Koster, Suhl 2019); they
+affect the driving. Therefore the fleet is small, so that
 driving is the bottleneck, and metres per unit are shown with units, lines and orders per hour.
 Bundles per hour are shown as well, because storing fewer bundles frees robots for a while. Each
 kind of demand has its own tables: means, differences to the rules, and the gain of each model over

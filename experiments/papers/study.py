@@ -60,7 +60,7 @@ class Study:
 
     @property
     def smoke(self) -> bool:
-        """Whether its runs are short, just to check that everything works."""
+        """Whether the runs are short and only check that everything works."""
         return self.suffix.endswith(_SMOKE)
 
     def table(self, name: str) -> pd.DataFrame:
@@ -164,7 +164,7 @@ def done(
     part
         Name of the runs' folder, if the study has several.
     replications
-        Another number of seeds, at most that given by the option of this name.
+        Number of seeds instead of the design's; the option of this name can only reduce it.
     without
         Names of arms to leave out.
 

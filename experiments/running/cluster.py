@@ -67,7 +67,7 @@ class DaskWorkers:
     Raises
     ------
     InputError
-        If Dask is not installed, the scheduler does not answer or the profile is wrong.
+        If Dask is not installed, the scheduler does not answer, or the profile is invalid.
     """
 
     def __init__(self, address: str, work: Callable[[Job], Outcome] | None = None) -> None:
@@ -90,7 +90,7 @@ class DaskWorkers:
 
     @property
     def slots(self) -> int:
-        """Two jobs per worker, so that none waits for the driver."""
+        """Two jobs per worker, so that no worker waits for the driver."""
         with self._scheduler_there():
             workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
         threads = [int(worker["nthreads"]) for worker in workers]

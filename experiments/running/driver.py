@@ -34,19 +34,19 @@ MERGE_EVERY = 1024
 
 
 class Watcher(Protocol):
-    """Is notified of the progress of an experiment."""
+    """Interface of objects that are notified of the progress of an experiment."""
 
     def planned(self, total: int, finished: int) -> None:
-        """The total number of runs, and how many of them are finished."""
+        """Receive the total number of runs, and how many of them are finished."""
 
     def ended(self, job: Job, outcome: Outcome) -> None:
-        """A run has ended, without an error if `outcome.error` is empty."""
+        """Note that a run has ended, without an error if `outcome.error` is empty."""
 
     def remark(self, text: str) -> None:
-        """Something happened that is worth a line of output."""
+        """Receive a remark that is worth a line of output."""
 
     def tick(self) -> None:
-        """Some time has passed."""
+        """Note that some time has passed without a run that ended."""
 
 
 class Silent:

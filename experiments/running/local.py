@@ -52,7 +52,7 @@ class Engine(Protocol):
         """Start a job."""
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended; wait for one if there is none yet."""
+        """Return the jobs that have ended; if there are none, wait for one up to a given time."""
 
     def close(self) -> None:
         """Stop all running jobs."""

@@ -1,8 +1,8 @@
 """Analysis of variance: how much of the variation of a measure each factor explains.
 
 Every effect is a comparison of two linear models by least squares, whose numbers of parameters are
-their ranks. Left-out combinations of levels therefore cost degrees of freedom, and effects that the
-design cannot separate are detected.
+their ranks. If a design leaves out combinations of levels, effects therefore have fewer degrees of
+freedom, and effects that the design cannot separate are detected.
 """
 
 from __future__ import annotations
@@ -31,10 +31,10 @@ CROSS = " x "
 """Separates the names of two factors in the name of their interaction."""
 
 NEGLIGIBLE = 1e-9
-"""Share of a column not explained by the others below which it counts as rounding error."""
+"""Largest share of a model column, unexplained by the others, that counts as rounding error."""
 
 Effect = tuple[int, ...]
-"""Numbers of the factors in an effect."""
+"""An effect: the numbers of its factors, one for a main effect and two for an interaction."""
 
 
 def anova(

@@ -61,8 +61,8 @@ def interval(
         Probability that intervals made this way cover the true mean. Default 0.95.
     method
         `t`: Student's t, exact if runs are normally distributed. `bootstrap`: bias-corrected and
-        accelerated (Efron 1987), for distributions that are not; too narrow for few runs (see
-        `tests.tools.coverage`). Default `t`.
+        accelerated (Efron 1987), for other distributions; its intervals are too narrow for few runs
+        (see `tests.tools.coverage`). Default `t`.
     """
     given = np.asarray(values, dtype=float)
     given = given[~np.isnan(given)]

@@ -34,7 +34,7 @@ class Selection:
     used
         Number of observations of each arm that the procedure used.
     observations
-        Number of observations of the remaining arms.
+        Number of observations of each remaining arm.
     over
         Whether the procedure has ended; otherwise it needs one more observation of each remaining
         arm.
@@ -88,7 +88,7 @@ def kim_nelson(
     goal
         `max` or `min`.
     most
-        Maximum number of observations. Default: no limit.
+        Maximum number of observations per arm. Default: no limit.
 
     Raises
     ------

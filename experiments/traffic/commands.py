@@ -111,7 +111,7 @@ def duel(
     agents: Agents = None,
     tasks: Tasks = None,
 ) -> None:
-    """Drive the same trips with several planners: random ones, or those of the files of a .map."""
+    """Drive the same trips with several planners: random trips, or given ones on a .map."""
     names = planner or duels.all_planners()
     duels.check_planners(names)
     loaded, trips = _given(
@@ -179,7 +179,7 @@ def warehouses_command(
     check: Check = False,
     out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("results/scale"),
 ) -> None:
-    """Measure how the work of whole warehouses grows from 250 to 2000 robots, constant density."""
+    """Measure how the work of warehouses grows from 250 to 2000 robots at constant density."""
     from rmfs.experiments.traffic import warehouses
 
     if not any(least <= site.robots <= most for site in warehouses.SITES):

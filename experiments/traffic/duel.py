@@ -73,7 +73,7 @@ def all_planners() -> list[str]:
 
 
 def row(run: TripRun) -> dict[str, float]:
-    """Return the table row of a run; `collisions` is empty if the run was not checked."""
+    """Return the table row of a run; `collisions` is nan if the run was not checked."""
     hours = (run.end_s - run.warmup_s) / 3600.0
     counters, delays = run.traffic.counters(), run.delays_s
     calls_ms = 1e3 * run.traffic.call_times_s()
@@ -130,7 +130,7 @@ def save(frame: pd.DataFrame, path: Path, decimals: dict[str, int] | None = None
 
 
 def check_planners(texts: Sequence[str]) -> None:
-    """Validate planners before anything is run."""
+    """Raise an error if a planner or one of its parameters is invalid."""
     for text in texts:
         chosen(text)
 

@@ -40,9 +40,9 @@ WARMUP_S = 300.0
 """Simulated warm-up in s, until the initial rush is over and frequently used tables are built."""
 
 ENOUGH_ROBOTS = 1000
-"""Number of robots of the benchmark."""
+"""Number of robots for which the simulator is required to reach `FASTER`."""
 FASTER = 60.0
-"""The benchmark: simulated seconds per processor second with this number of robots."""
+"""Required simulated seconds per processor second, with `ENOUGH_ROBOTS` robots."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,8 @@ class Size:
     horizontal, vertical
         Numbers of aisles.
     long_sides, short_sides
-        Number of stations in the east and in the west each; in the north and in the south each.
+        Number of pick stations in the east and of replenishment stations in the west; number of
+        pick stations in the north and of replenishment stations in the south.
     """
 
     robots: int
@@ -196,7 +197,7 @@ def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
 
 
 def exponent(frame: pd.DataFrame, column: str = "trips/h") -> float:
-    """Return b of processor time = a column^b, by least squares on logarithms: 1 is linear."""
+    """Return the exponent b of processor time = a * column^b, fitted to logarithms; 1 is linear."""
     work, cpu = np.log(frame[column].to_numpy()), np.log(frame["CPU s per h"].to_numpy())
     return float(np.polyfit(work, cpu, 1)[0])
 

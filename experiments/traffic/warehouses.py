@@ -1,9 +1,9 @@
 """Growth of the work of whole warehouses with the fleet: `rmfs traffic warehouses`.
 
 Layouts of the default kind have ten pods and 1/12 of a pick station per robot, a constant backlog,
-and rules. Each run is a separate process, so that its memory can be measured. Times are processor
-times, which equal wall times on an idle core. Two windows are measured: the initial rush, and a
-later one in normal operation.
+and are controlled by rules. Each run is a separate process, so that its memory can be measured.
+Times are processor times, which equal wall times on an idle core. Two windows are measured: the
+initial rush, and a later one in normal operation.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Site:
     replenishments: tuple[int, int, int, int]
 
     def layout(self) -> Layout:
-        """Generate the layout, with blocks of 2 x 2 places, which give enough aisles."""
+        """Generate the layout, with enough aisles: its blocks have 2 x 2 storage locations."""
         values: dict[str, Any] = {
             "robots": self.robots,
             "horizontal_aisles": self.horizontal,
@@ -86,7 +86,7 @@ DECIMALS = {
 }
 
 WINDOW_S = 600.0
-"""Lengths of the initial and the later window, in simulated s."""
+"""Length of both the initial and the later window, in simulated s."""
 
 
 def table(
@@ -183,7 +183,7 @@ def _deciding_s(simulation: Simulation) -> float:
 
 
 def growth(frame: pd.DataFrame) -> dict[str, float]:
-    """Return, by rules, the work per robot-hour of the largest fleet divided by the smallest's."""
+    """Return, by rules, the work per robot-hour of the largest fleet over that of the smallest."""
     grown = {}
     for rules, rows in frame.groupby("rules", sort=False):
         work = rows["CPU s per robot-hour"]
