@@ -26,7 +26,8 @@ def answer(
     values
         Values of the solution as plain arrays and numbers; None if it has none.
     scale
-        Reference of the relative gap. Default: the objective.
+        Number by which the absolute gap is divided to give the relative one. Default: the absolute
+        objective.
     """
     return Answer(
         solution=values if solution.found else None,

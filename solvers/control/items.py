@@ -30,20 +30,20 @@ class Item:
 
     @property
     def lines(self) -> tuple[OrderLine, ...]:
-        """The order lines that it represents."""
+        """The order lines of this item."""
         return self.order.lines if self.line is None else (self.line,)
 
     @property
     def key(self) -> tuple[int, int]:
-        """Identifies the item: index of the order, and SKU or -1."""
+        """Key of the item: index of the order, and SKU of the line (-1 for a whole order)."""
         return self.order.index, -1 if self.line is None else self.line.sku
 
     def waits(self, view: View) -> bool:
-        """Whether it is still in the backlog."""
+        """Whether the item is still in the backlog."""
         return self.order in view.orders and (self.line is None or self.line in self.order.lines)
 
     def decision(self, station: int) -> AssignOrder | AssignLines:
-        """Return the decision that assigns it to a station."""
+        """Return the decision that assigns the item to a station."""
         if self.line is None:
             return AssignOrder(self.order, station)
         return AssignLines(self.order, station, (self.line.sku,))

@@ -1,4 +1,4 @@
-"""Joint controllers: what models of orders, pods and robots leave to rules."""
+"""Base of joint TA controllers, with the rules for decisions that their models leave open."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ P = TypeVar("P", bound=Parameters)
 
 
 class JointAllocation(TaskAllocation[P]):
-    """A TA rule whose model decides orders, and pods for picks together with their robots.
+    """A TA controller whose model assigns orders and pods to pick stations, and robots to the pods.
 
-    Robots bring pods to replenishment stations, the nearest station with work first, with pods
-    chosen by PPS lexicographic; idle robots rest by the rest rule. Answers are stored as a plan,
-    and carrying it out involves no other controller.
+    Other decisions are made by rules: a robot sent for bundles goes to the nearest replenishment
+    station with work, with a pod chosen by PPS lexicographic; idle robots rest by the rest rule.
+    Answers are stored as a plan, and no other controller takes part in carrying it out.
     """
 
     goes_on = True
@@ -42,7 +42,7 @@ class JointAllocation(TaskAllocation[P]):
         self._rest = RestPlaces(view, rest, self.draw)
 
     def is_modelled(self, decision: Any) -> bool:
-        """Whether the model makes this decision: orders, and pods for picks with their robots."""
+        """Whether the model makes this decision: assigning an order, or fetching a pod for picks."""
         if isinstance(decision, BringForPicks):
             return decision.robot.pod < 0
         return isinstance(decision, AssignOrder | AssignLines)
@@ -96,7 +96,7 @@ class JointAllocation(TaskAllocation[P]):
         return self._heuristic.serves(pod, station)
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Return no pod, as only this controller assigns tasks."""
+        """Return -1 (no pod), as this controller itself assigns the tasks for picks."""
         return -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:

@@ -1,9 +1,9 @@
 """Determines which orders may be split, within the capacity of the put wall and a given limit.
 
-A split order needs a slot of the wall for each of its totes but one, or a single slot if its totes
-share one. The number of totes is known only when the last line has a station, so each line without
-a station counts as a separate tote. An order that is split within this capacity therefore never
-finds the wall full, and no pick station is blocked.
+A split order needs a slot of the wall for each of its totes but one, or, if its totes share a slot,
+a single one. The number of totes is known only when the last line has a station, so each line
+without a station counts as a separate tote. An order that is split within this capacity therefore
+never finds the wall full, and no pick station is blocked.
 
 If the capacity does not suffice for all orders, orders are ranked by the number of lines that pods
 under way serve at one station, per slot needed. Orders that such pods serve completely need no
@@ -68,14 +68,14 @@ class Splitting:
         return self._orders == self._slots == inf and self._pays is None
 
     def admits(self, order: Order) -> bool:
-        """Whether lines of an order of the backlog may be assigned separately.
+        """Whether the lines of an order in the backlog may be assigned separately.
 
-        True if the order is already split, or has only one line, which is no split.
+        Always true if the order is already split, or has a single line.
         """
         return self._is_settled(order) or (self._orders >= 1 and self._slots >= self._need(order))
 
     def offers(self) -> Callable[[Order], bool]:
-        """Choose the orders that may be split now; return a test whether an order is one of them.
+        """Choose the orders that may be split now; return a function that tests for such an order.
 
         Orders that are already split, or have a single line, always pass.
         """

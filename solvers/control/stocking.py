@@ -45,7 +45,7 @@ _SCORED_PER_S = 1e6
 
 @dataclass(frozen=True)
 class Question:
-    """Bundles, pods and stations, and the method.
+    """A storage problem of bundles, pods and stations, and how to solve it.
 
     Attributes
     ----------
@@ -82,7 +82,8 @@ class StockingParameters(SearchParameters):
     gap: NotNegative = 0.01
     """Relative gap between value and bound at which the search ends."""
     leave_s: NotNegative = 20.0
-    """Cost of postponing a bundle, in seconds of a robot, in addition to what it would save."""
+    """Cost of postponing a bundle, in seconds of a robot, in addition to the robot time that it would
+    save if stored."""
     bundles: Count = 60
     """Maximum number of bundles considered, the oldest first."""
     pods_per_bundle: Count = 8
@@ -92,7 +93,7 @@ class StockingParameters(SearchParameters):
 
 
 class StockingControl(ReplenishmentPodSelection[StockingParameters]):
-    """Chooses bundles, pods and stations jointly: ROA must be a dummy.
+    """Decides jointly which bundles are stored in which pods and where; ROA must be its dummy.
 
     The value of a bundle is the robot time that its units will save by raising the pile-on. It is
     high if its SKU is in demand and short, and higher in a pod with SKUs that are ordered together
@@ -121,7 +122,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Told]:
-        """Ask if bundles wait for which a station has room, and the buffer time is over."""
+        """Ask if bundles wait, a station has room for them, and the buffer time is over."""
         if self._buffer.is_over(not self.in_flight and self._is_possible()):
             self._buffer.begin(again=True)
             yield self._question()

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def excess_s(view: View, stations: Sequence[PickStation]) -> NDArray[np.float64]:
-    """Return the excess of each station's work over the least of all stations, shape (S,), in s.
+    """Return each station's work minus the least work of all stations, shape (S,), in s.
 
     Work is the unpicked units of orders at the station, in seconds of its current picker. Inactive
     stations are excluded from the comparison.

@@ -23,11 +23,12 @@ class _Seen(NamedTuple):
 
 
 class Forecast:
-    """Counts the robots that work uses, and forecasts their number from recent counts.
+    """Counts the robots in use for work, and forecasts the number needed from recent counts.
 
     Robots at rest, charging, or queuing behind another waiting robot at a pick or replenishment
-    station are not counted. The count is scaled up in proportion from the stations with work that
-    were busy to all stations with work.
+    station are not counted. Some stations with work have no robot at their head. Therefore the
+    count is multiplied by the number of stations with work, and divided by the number of those that
+    have a robot there.
 
     Parameters
     ----------

@@ -18,23 +18,26 @@ class ScheduleParameters(LevelParameters):
     """Parameters of CA schedule."""
 
     method: Literal["highs", "cp_sat", "greedy"] = "highs"
-    """Solver: HiGHS or CP-SAT, starting from the greedy rule, or that rule alone."""
+    """Solution method: HiGHS or CP-SAT, starting from the greedy rule, or the greedy rule alone."""
     period_s: Positive = 60.0
     """Seconds between schedules."""
     slot_share: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.1
-    """Length of a slot: the time in which a place charges this share of a battery."""
+    """Length of a slot, given as the share of a battery that the most powerful place charges in it."""
     slots: Count = 10
     """Number of slots to plan ahead."""
     longest: Count = 7
     """Maximum length of a stay in slots."""
     worth: NotNegative = 1.15
-    """Value of energy in robot time, relative to the time in which a place supplies it."""
+    """Value of energy: robot time per time in which the most powerful place supplies the energy."""
     idle: Share = 0.6
-    """Cost of time of a robot not needed for work, relative to that of a missing robot."""
+    """Cost of time for which a robot that is not needed is away from work, as a share of the cost of
+    time for which a robot is missing."""
     curve: Share = 0.2
-    """Relative difference in value between the first and the last energy of a battery."""
+    """Curvature of the value of energy: in an empty battery, energy is worth 1 + `curve` times as much
+    as on average; in a full one, 1 - `curve` times as much."""
     margin_share: Share = 0.0
-    """Safety margin above the level at which robots are sent to charge in any case."""
+    """Safety margin, as a share of the capacity, above the level that is enough for any task. The
+    model penalises levels below the sum."""
     window_s: Positive = 1200.0
     """Length in seconds of the past period from which the number of needed robots is forecast."""
     cases: Count = 4

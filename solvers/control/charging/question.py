@@ -13,13 +13,13 @@ from rmfs.solvers.models.solution import Limits
 
 @dataclass(frozen=True)
 class Question:
-    """Robots, places and forecast work.
+    """A charging problem, and how to solve it.
 
     Attributes
     ----------
     method
-        `highs` or `cp_sat`, used only if the gap of the greedy solution exceeds the limit, and
-        starting from that solution; or `greedy` alone.
+        `greedy`, `highs` or `cp_sat`. The latter two start from the greedy solution, and are used
+        only if its gap exceeds the limit.
     """
 
     data: Charging

@@ -35,7 +35,7 @@ class Group:
     swapped_share
         Level after a swap; 0 for plug-in places.
     swaps_s
-        Time per swap at one station in the long run; 0 for plug-in places.
+        Mean time per swap at one station in the long run, in s; 0 for plug-in places.
     """
 
     stations: tuple[RecoveryStation, ...]
@@ -88,7 +88,7 @@ def snapshot(
     view, batteries
         The world.
     groups
-        The groups of stations, in the numbering of the model.
+        The groups of stations, in the order of their numbers in the model.
     wanted
         Robots needed for work in each case, shape (Q,).
     given

@@ -38,9 +38,9 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     also returns *prospects*: orders that the same pods can serve as soon as slots are free. Slots
     and robots are served from this plan until parts of it become invalid.
 
-    A robot gets the nearest of the pods called for its station. Heuristics take over in three
-    cases: pod match if the optimiser fails, and PPS lexicographic, with its defaults, for
-    replenishment and for open requests that no pod called or under way can serve.
+    A robot sent for a station fetches the nearest of the pods called for this station. Heuristics
+    take over in three cases: pod match if the optimiser fails, and PPS lexicographic, with its
+    defaults, for replenishment and for open requests that no pod called or under way can serve.
     """
 
     parameters_model = PileOnParameters
@@ -64,7 +64,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     # --- orders ---------------------------------------------------------------------------------
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Record that a pod has arrived: further orders may use its stock."""
+        """Record that a pod has reached a station: further orders may use its stock."""
         self._arrived = True
 
     def next_event_s(self) -> float:
@@ -72,7 +72,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Decision]:
-        """Fill slots by the plan, and ask if it has to be extended."""
+        """Fill slots by the plan, and ask the optimiser if the plan has to be extended."""
         yield from self._carry_out()
         if not self._buffer.is_over(not self.in_flight and self._is_short()):
             return
@@ -123,7 +123,8 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
         """Return the nearest pod called for a station that can serve its open requests.
 
-        If no pod is called and open requests lack units, the heuristic chooses; otherwise -1.
+        If no pod is called for the station and its open requests lack units, the heuristic chooses
+        a pod; otherwise the result is -1.
         """
         called = self._plan.pods[station.index]
         pods = [pod for pod in called if self._plan.useful(pod, station)]

@@ -32,7 +32,7 @@ class JointParameters(SearchParameters):
     later: bool = False
     """Whether a whole order may take a slot while pods for some of its lines are still to come."""
     open_line_s: NotNegative = 100.0
-    """With `later`, cost of each line still to come, in seconds of a robot."""
+    """With `later`, cost of each line whose pod is still to come, in seconds of a robot."""
     when_needed: bool = True
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
     whenever a slot can be filled, as in M1G and HADGS."""
@@ -62,8 +62,8 @@ class JointParameters(SearchParameters):
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 1
     """Slots of each station reserved for what the pod at its head can serve."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 20
-    """Steps of the search for a bound on each decision, which is only recorded. More steps improve
-    it; they do not count as work."""
+    """Steps of the search for a bound on the value of each decision. The bound is only recorded.
+    More steps improve it; they do not count as work."""
     pods_per_sku: Count = 4
     """Number of candidate pods per needed SKU and station passed to CP-SAT."""
     orders_per_slot: Count = 64

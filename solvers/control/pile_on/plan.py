@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """An item planned for a station, and the call that decided it (None: the heuristic)."""
+    """An item planned for a station, and the optimiser's call that planned it (or None: a rule)."""
 
     item: Item
     call: Call | None
 
 
 class Called(NamedTuple):
-    """The call that called a pod (None: the heuristic), and the robot to fetch it (-1: any)."""
+    """The call of the optimiser that called a pod (None: a rule), and the robot for it (-1: any)."""
 
     call: Call | None
     robot: int = -1
@@ -124,7 +124,8 @@ class Plan:
     def due(self, station: PickStation) -> Iterator[Planned]:
         """Yield items that can be assigned to a station now, one at a time.
 
-        Items that the pod at the head can serve come first and may use the reserved slots. Invalid
+        Items that the pod at the head can serve come first and may use the reserved slots, as may
+        items that a called pod can serve if it serves no open request of the station. Invalid
         items are dropped and counted as stale: those that have left the backlog and, unless
         `later`, those whose stock has gone.
         """
@@ -199,7 +200,9 @@ class Plan:
         )
 
     def useful(self, pod: int, station: PickStation) -> bool:
-        """Whether a pod is at hand and can serve an open request of a station."""
+        """Whether a pod can serve an open request of a station, and has no task.
+
+        A pod carried by a robot with a task counts as having one."""
         inventory, at_hand = self._view.inventory, self._view.storage.is_at_hand.item
         return bool(at_hand(pod)) and inventory.serves(pod, list(station.requests.lines))
 

@@ -81,7 +81,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     """Asks a model which orders take slots, which pods come, and which robots fetch them.
 
     The model is asked, at most once per `buffer_s`, after the events in `triggers`, as long as a
-    slot is free for which nothing is planned. It may send the robots without a task. Its answer is
+    slot is free for which nothing is planned. It may use the robots without a task. Its answer is
     stored as a plan and carried out as in POA pile-on; a called pod whose robot has got another
     task meanwhile goes to the next free robot.
 
@@ -121,7 +121,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     def hear(self, trigger: Trigger, subject: Any) -> None:
         """Record that the model may now decide differently.
 
-        A new order alone changes nothing as long as no robot is free for its pods.
+        A new order changes nothing as long as no robot is resting.
         """
         asks = _ASKS[trigger] in self.parameters.triggers
         self._changed |= asks and (trigger is not Trigger.NEW_ORDER or bool(self.view.resting))
@@ -131,7 +131,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Decision]:
-        """Carry out the plan, ask if slots are left, and assign tasks to the other robots."""
+        """Carry out the plan, ask the optimiser if needed, and assign tasks to the other robots."""
         for robot in [r for r in self.view.asking.values() if r.pod >= 0]:
             yield from self._go_on(robot, consult)
         yield from self._replenish(self._most_at_bundles - self._at_bundles())

@@ -13,7 +13,7 @@ NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Count = Annotated[int, pydantic.Field(ge=1)]
 
 STEPS_PER_STATION = 75
-"""Steps of the search for each pick station of the site and each station planned."""
+"""Default of `steps`, per pick station of the site."""
 
 
 class PlanningParameters(SearchParameters):
@@ -68,8 +68,8 @@ class PlanningParameters(SearchParameters):
     """Horizon in seconds of future orders considered in a plan, drawn from past orders. They raise
     the value of pods and get no slots. 0: none."""
     scenarios: Count = 4
-    """With `expected_s`, number of draws of future orders for each plan; the value of an order is
-    divided by it."""
+    """With `expected_s`, number of draws of future orders for each plan; the value of a future
+    order is divided by it."""
     expected_worth: Annotated[float, pydantic.Field(gt=0, le=1)] = 1.0
     """With `expected_s`, value of serving all orders of a draw, as a share of their value if they
     were waiting."""
@@ -87,7 +87,7 @@ class PlanningParameters(SearchParameters):
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Steps of the search for a bound on each plan, which is only recorded. They do not count as
-    work."""
+    """Steps of the search for a bound on the value of each plan. The bound is only recorded, and
+    these steps do not count as work."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 1.0
     """Limit of `cp_sat` in deterministic seconds of CP-SAT."""

@@ -28,11 +28,11 @@ class Planned:
     Attributes
     ----------
     first, last
-        The visits between which it has a slot, as numbered when the plan was made.
+        Numbers of the visits, in the original plan, at which the item gets its slot and leaves it.
     units
-        Units that each of its pods serves.
+        Units of the item that each pod serves.
     begins_with
-        The pod of its first visit.
+        The pod of the item's first visit.
     """
 
     item: Item
@@ -69,7 +69,7 @@ class Plan:
         self._call: list[Call | None] = [None for _ in view.pick_stations]
 
     def take(self, solution: Mapping[str, Any], memo: Memo, call: Call | None) -> None:
-        """Replace the plan by a solution, at the stations that were part of the question."""
+        """Replace the plans of the stations that were part of the question by a solution."""
         visits: dict[int, list[tuple[int, int]]] = {}
         served = zip(memo.lines, memo.order_of, solution["line_visit"].tolist(), strict=True)
         for line, number, visit in served:
@@ -104,7 +104,7 @@ class Plan:
             orders.sort(key=lambda one: one.sequence)
 
     def call(self, station: int) -> Call | None:
-        """Return the call that produced the plan of a station; None: the rule."""
+        """Return the optimiser's call that produced the plan of a station; None: the start rule."""
         return self._call[station]
 
     def keys_of(self, stations: Sequence[int]) -> set[tuple[int, int]]:
@@ -112,7 +112,7 @@ class Plan:
         return {one.item.key for station in stations for one in self._orders[station]}
 
     def splitting(self, stations: Iterable[int]) -> Splitting:
-        """Return the capacity to split orders, less that of lines planned for these stations."""
+        """Return the capacity to split orders that lines planned for these stations leave."""
         planned = [one.item for station in stations for one in self._orders[station]]
         orders = [item.order for item in planned if item.line is not None]
         return Splitting(self._view, self._split_orders, orders)
@@ -128,8 +128,8 @@ class Plan:
     def due(self, station: PickStation) -> Iterator[AssignOrder | AssignLines]:
         """Yield assignments due now; the caller carries out each before requesting the next.
 
-        Due are items whose first pod is under way. One slot is reserved for items that the pod at
-        the head serves alone.
+        An item is due if its first pod is under way. One slot is reserved for items that the pod at
+        the head of the queue serves alone.
         """
         waiting = self._orders[station.index]
         if not waiting or not station.active:
@@ -149,11 +149,11 @@ class Plan:
                 yield planned.item.decision(station.index)
 
     def streams(self, pod: int, station: int) -> bool:
-        """Whether a waiting item is planned for a station that this pod serves alone."""
+        """Whether the plan of a station contains a waiting item that this pod serves alone."""
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:
-        """Return the units that pods under way will supply to orders, with or without a slot."""
+        """Return the number of units that pods under way supply to orders with or without a slot."""
         view, index = self._view, station.index
         coming = under_way(view, station)
         units = sum(len(task.picks) for task in station.tasks.values())

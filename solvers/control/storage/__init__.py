@@ -1,1 +1,1 @@
-"""PSA by models: assignment of a batch of pods, prices of places, or intervals of stay."""
+"""PSA by models: assignment of several pods, prices of storage locations, or intervals of stay."""

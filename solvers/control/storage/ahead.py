@@ -1,4 +1,4 @@
-"""Base of PSA controllers with models: places for all pods that will return are chosen ahead."""
+"""Base of PSA controllers with models, which plan storage locations for all pods that return."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ P = TypeVar("P", bound=StorageParameters)
 
 
 class Ahead(PodStorageAssignment[P]):
-    """Plans places for pods that robots carry before they have to be stored.
+    """Plans storage locations (places) for the pods that robots carry, before these are stored.
 
     When a pod reaches a station, and at most once per `buffer_s`, the optimiser is asked for the
     places of all pods that robots carry to stations or have to store now. Its plan replaces the
@@ -66,7 +66,7 @@ class Ahead(PodStorageAssignment[P]):
             yield self.question(robots)
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Store the places that are still empty in the plan."""
+        """Replace the plan by the answer, but leave out places that are no longer empty."""
         self._plan.clear()
         if call.solution is not None:
             carried = {robot.pod for robot in self.view.robots}
@@ -78,7 +78,7 @@ class Ahead(PodStorageAssignment[P]):
         return iter(())
 
     def place(self, robot: Robot) -> int | By[int]:
-        """Store the pod at its planned place, or at the nearest one."""
+        """Return the planned place of the pod, or else the nearest empty one."""
         planned = self._plan.pop(robot.pod, None)
         if planned is not None:
             place, call = planned

@@ -1,4 +1,4 @@
-"""Divides places into zones by distance from pick stations, and pods into classes by visits."""
+"""Division of storage locations into zones by distance, and of pods into classes by visits."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def bands(values: NDArray[np.float64], count: int) -> NDArray[np.int64]:
 
     Returns
     -------
-    The band of each thing, shape (N,), from 0 without gaps; ties by index.
+    The band of each thing, shape (N,), from 0 without gaps; ties are broken by index.
     """
     band = np.empty(len(values), np.int64)
     order = np.argsort(values, kind="stable")

@@ -1,4 +1,4 @@
-"""PSA placement: the best places for all returning pods, by current and later trips."""
+"""PSA placement: the best storage locations for all returning pods, by current and later trips."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """Returning pods and empty places.
+    """Returning pods and empty storage locations (places).
 
     Attributes
     ----------
@@ -65,23 +65,23 @@ class PlacementParameters(StorageParameters):
     """Parameters of PSA placement."""
 
     method: Literal["assignment", "greedy"] = "assignment"
-    """Solution method: the optimal assignment, or a rule in which the most visited pods choose
-    first."""
+    """Solution method: the optimal assignment, or (`greedy`) a rule in which the most visited pods
+    choose first."""
     later_weight: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
-    """Weight of a second of robot time for later visits, relative to a second now."""
+    """Weight of a second of robot time for later visits, relative to one of the current trip."""
 
 
 class PlacementControl(Ahead[PlacementParameters]):
     """Weighs the trip of storing each pod against the trips of its expected visits.
 
-    Solves a linear assignment of all pods that robots carry to the empty places.
+    It solves a linear assignment problem of all pods that robots carry and all empty places.
     """
 
     parameters_model = PlacementParameters
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.storage.placement",)
 
     def question(self, robots: Sequence[Robot]) -> Ask[Question]:
-        """State the assignment, with the places that may matter."""
+        """State the assignment problem, with the places that an optimal assignment may use."""
         empty = self.view.storage.is_empty.nonzero()[0]
         pods = [robot.pod for robot in robots]
         travel_s = self.ways.storing_s(robots)[:, empty]

@@ -1,4 +1,4 @@
-"""PSA prices: travel time plus the price of the place for the duration of the stay."""
+"""PSA prices: travel time plus the price of the storage location for the duration of the stay."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class PricesParameters(StorageParameters):
     """Parameters of PSA prices."""
 
     method: Literal["clarabel", "greedy"] = "clarabel"
-    """Computation of the steady state: the convex programme, or storage by turnover."""
+    """Computation of the steady state: the convex program, or (`greedy`) storage by turnover."""
     classes: Count = 8
     """Number of classes of pods, by expected visits."""
     zones: Count = 8
@@ -61,15 +61,16 @@ class PricesParameters(StorageParameters):
     period_s: Positive = 300.0
     """Seconds after which prices are recomputed."""
     congestion_s_h: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.02
-    """Seconds of delay per visit, for each visit per hour to the same zone."""
+    """Congestion: seconds by which each visit is delayed, per visit per hour to the same zone."""
 
 
 class PricesControl(PodStorageAssignment[PricesParameters]):
-    """Values places by the dual prices of an optimal steady state, and chooses the cheapest place.
+    """Prices storage locations (places) by an optimal steady state, and chooses the cheapest.
 
-    Every `period_s`, pods are classified by expected visits, and a convex programme determines how
-    many of each class should be stored in each zone, including congestion. The price of a place is
-    what one more place of its zone would save per hour. A pod goes to the empty place with the
+    Every `period_s`, pods are classified by expected visits, and a convex program determines how
+    many pods of each class should be stored in each zone; it includes the delay by congestion. The
+    price of a place, a dual price of this program, is the time that one more place in its zone
+    would save per hour. A pod goes to the empty place with the
     least sum of the trips there and away, the delay, and the price for the expected duration of its
     stay. Until the first answer, and after a failure, it goes to the nearest empty place.
     """
@@ -88,7 +89,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         self._asked_s = -inf
 
     def next_event_s(self) -> float:
-        """Time at which prices are recomputed."""
+        """Return the time at which prices are recomputed."""
         return max(self._asked_s, 0.0) + self.parameters.period_s
 
     def decide(self) -> Iterator[Ask[Question]]:

@@ -1,4 +1,4 @@
-"""PSA stays: zones for returning pods, given when other pods leave theirs."""
+"""PSA stays: zones for returning pods, chosen by the times at which other pods leave theirs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 _SERVICE_S = 30.0
-"""Assumed time from question to storing for pods whose service has not started."""
+"""Assumed time from the question until a pod is stored, in s, if its service is not over."""
 
 
 @dataclass(frozen=True)
@@ -59,14 +59,14 @@ class StaysParameters(StorageParameters, SearchParameters):
     """Parameters of PSA stays."""
 
     method: Literal["cp_sat", "highs", "greedy"] = "cp_sat"
-    """Solution method: CP-SAT, or HiGHS to optimality, each starting from a rule in which the stays
-    with most at stake choose first; or that rule alone."""
+    """Solution method: `greedy` is a rule in which the stays that could lose most choose first.
+    CP-SAT, and HiGHS (to optimality), start from its solution."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
     """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     gap: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.001
     """Relative gap between value and bound at which the search ends."""
     horizon_s: Positive = 900.0
-    """Horizon in seconds; pods that stay longer only reduce the number of places."""
+    """Horizon in seconds. Pods that stay longer are not modelled; they only occupy their places."""
     zones: Annotated[int, pydantic.Field(ge=1)] = 8
     """Number of zones of places, by distance from the pick stations."""
 
@@ -76,8 +76,8 @@ class StaysControl(Ahead[StaysParameters]):
 
     Every pod is assumed to be fetched after its expected stay, at the latest after the horizon:
     stored pods then leave their zone, and returning pods need a place until then. An integer
-    programme finds the zones with the least robot time in which there is always room. Within its
-    zone a pod takes the empty place nearest to its station.
+    program chooses the zones so that there is always room and robot time is least. Within its zone,
+    a pod takes the empty place nearest to its station.
     """
 
     parameters_model = StaysParameters
@@ -89,7 +89,7 @@ class StaysControl(Ahead[StaysParameters]):
         self._index = np.array(view.storage.place_index)
 
     def question(self, robots: Sequence[Robot]) -> Ask[Question]:
-        """State the stays."""
+        """State the problem of stays."""
         data = self._stays(robots)
         question = Question(data, len(robots), self.parameters.method, self.parameters.limits)
         sizes = {"pods": len(robots), "stays": len(data.begin_s), "zones": len(data.capacity)}

@@ -1,4 +1,4 @@
-"""Travel times between storage places and stations."""
+"""Travel times between storage locations and stations."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 UNREACHABLE_S = 1e5
-"""Time used where there is no path."""
+"""Time used where there is no path, in s."""
 
 
 class Ways:
-    """Times of storing and fetching pods, for every storage place.
+    """Times of storing and fetching pods, for every storage location (place).
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Ways:
     def store_s(self, waypoint: int) -> NDArray[np.float64]:
         """Return loaded travel times from a waypoint to each place, shape (L,), in s.
 
-        Unreachable places have inf.
+        The time is inf for unreachable places.
         """
         times = self._stored.get(waypoint)
         if times is None:
@@ -61,5 +61,5 @@ class Ways:
         return times
 
     def storing_s(self, robots: Sequence[Robot]) -> NDArray[np.float64]:
-        """Return times from each robot's place of service to each place, shape (R, L), in s."""
+        """Return loaded travel times from robots' waypoints to each place, shape (R, L), in s."""
         return np.stack([self.store_s(robot.waypoint) for robot in robots])

@@ -1,4 +1,4 @@
-"""Base of TA controllers with models: when to ask, and the rule that replaces an answer."""
+"""Base of TA controllers with models: times of questions, and the rule that replaces an answer."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ P = TypeVar("P", bound=TaskParameters)
 class Asking(TaskAllocation[P]):
     """Asks the optimiser what the robots that need a task, and those at rest, should do.
 
-    It is asked as soon as a robot needs a task, and for robots at rest when there is new work, at
-    most once per `buffer_s`. If the optimiser has failed or has not answered yet, a rule decides: a
-    pod continues at a station that it can serve, or is parked; an empty robot works for the station
-    with work that has the fewest pods under way, ties by travel time.
+    The optimiser is asked as soon as a robot needs a task, and for robots at rest when there is new
+    work, at most once per `buffer_s`. If the optimiser has failed or has not answered yet, a rule
+    decides: a pod continues at a station that it can serve, or is parked; an empty robot works for
+    the station with work that has the fewest pods under way; ties are broken by travel time.
     """
 
     goes_on = True
@@ -70,7 +70,7 @@ class Asking(TaskAllocation[P]):
 
     @abstractmethod
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the valid decisions of a solution, using `call.left` to go through its parts."""
+        """Yield the valid decisions of a solution; iterate over its parts by `call.left`."""
 
     def next_event_s(self) -> float:
         """Return when the optimiser may be asked again if there is something to ask; else inf."""
@@ -106,12 +106,12 @@ class Asking(TaskAllocation[P]):
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:
-        """Return a rest where the rule says, or where the robot is."""
+        """Return the decision to rest where the rest rule says, or else where the robot is."""
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def place_for(self, robot: Robot, consult: Consult) -> int:
-        """Return a place for the pod of a robot, or -1."""
+        """Return a storage location for the pod of a robot, or -1."""
         return consult.place_for(robot)
 
     def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:

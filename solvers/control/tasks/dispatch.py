@@ -81,20 +81,21 @@ class DispatchParameters(TaskParameters):
     late_weight: NotNegative = 0.02
     """Weight of a second of lateness of an order, in seconds of travel."""
     empty_battery_s: NotNegative = 0.0
-    """Additional travel time, in seconds, attributed to a robot with an empty battery, and in
-    proportion for others, so that robots with more energy are sent first."""
+    """Additional travel time, in seconds, attributed to a robot with an empty battery; for other
+    robots, it is proportional to the missing charge. So robots with more energy are sent first."""
 
 
 class DispatchControl(Asking[DispatchParameters]):
     """Assigns robots to stations; PPS chooses the pods that they bring.
 
-    The tasks are, for each station with work, pods that could be brought, as many as there are
-    robots; and for each carried pod, every station that it can serve. With `matching`, they are
-    assigned for least travel (linear assignment), within the limit of robots per station. With
-    `balance`, waiting behind other pods and lateness of orders count as well (minimum-cost flow).
-    Tasks that are not worth the trip are left out: pods are parked, and robots rest.
+    There are two kinds of tasks. A carried pod can be taken to any station that it can serve.
+    A robot without a pod can bring one to a station with work; there are as many such tasks per
+    station as there are robots without a pod, within the station's limit of robots and its work.
+    With `matching`, total travel time is minimised (linear assignment). With `balance`, waiting
+    behind other pods and lateness of orders count as well (minimum-cost flow). Tasks that are not
+    worth the trip are left out: pods are parked, and robots rest.
 
-    The trip to a pod is the mean over the pods with work, since PPS chooses later.
+    As PPS chooses the pod later, the time to bring a pod is the mean over all pods with work.
     """
 
     parameters_model = DispatchParameters

@@ -39,14 +39,15 @@ NONE = -1
 
 @dataclass(frozen=True)
 class Question:
-    """Robots, pods for stations and empty places.
+    """A routing problem of robots, pods and empty storage locations (places), and how to solve it.
 
     Attributes
     ----------
     method
         `lns`, `cp_sat`, `columns` or `greedy`.
     tasks, places
-        Number of tasks after each pod, and of places between them, considered by CP-SAT.
+        Number of next tasks after each pod, and number of places between a pod and a next task,
+        that CP-SAT considers.
     """
 
     data: TaskSequence
@@ -131,7 +132,7 @@ class RoutesParameters(TaskParameters, SearchParameters):
 
 
 class RoutesControl(Asking[RoutesParameters]):
-    """Plans routes of robots over stores and fetches, and lets each robot take the first step.
+    """Plans routes in which robots store and fetch pods, and lets each robot take the first step.
 
     The robots are those that need a task or rest, those that are storing a pod, and those at the
     head of a queue. The tasks are the best next pods of every station, each due when its station
@@ -139,7 +140,7 @@ class RoutesControl(Asking[RoutesParameters]):
     pod is stored where the trip there and on to the next pod is short, not at the nearest place.
     The plan is renewed whenever a robot needs a task.
 
-    A pod that can serve more where it stands is served. The routes include pods and places, so PPS
+    A pod whose station has more work for it stays there. The routes include pods and places, so PPS
     and PSA must be dummies. Without an answer, pods go to the nearest empty place.
     """
 
