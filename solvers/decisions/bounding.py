@@ -23,10 +23,10 @@ STEPS = 400
 """Number of subgradient steps of Lagrangian bounds."""
 
 _SEARCH = {"pile_on": "cp_sat", "planning": "cp_sat", "sequence": "columns"}
-"""Method whose own bound is used, where it is not the default one."""
+"""Method whose own bound is used, for families in which it is not the default method."""
 
 _LARGEST = 4_000_000
-"""Nonzeros of the largest programme whose relaxation is solved."""
+"""Nonzeros of the largest program whose relaxation is solved."""
 
 _LARGE = 50_000
 """Nonzeros beyond which the relaxation is solved by an interior-point method."""

@@ -39,8 +39,8 @@ _LARGEST = 2**53
 def content_hash(family: str, data: Plain) -> str:
     """Return the hash of a question: SHA-256 of its canonical JSON.
 
-    That is `{"data":{...},"family":"..."}` without blanks, keys sorted, absent fields left out, and
-    every array written in full.
+    The canonical JSON is `{"data":{...},"family":"..."}` without blanks and with sorted keys.
+    Absent fields are left out, and every array is written in full.
 
     Parameters
     ----------
@@ -60,9 +60,9 @@ def encoded(fields: tuple[Field, ...], plain: Plain, *, sparse: bool = True) -> 
     Parameters
     ----------
     fields
-        The fields to encode.
+        Definitions of the fields to encode.
     plain
-        Their values.
+        Values of the fields, by name.
     sparse
         Whether arrays with mostly equal entries may be written in short form. Default: yes.
     """
@@ -90,7 +90,7 @@ def decoded(
     raw
         The parsed JSON.
     known
-        Sizes of dimensions that are known: those of the question, for an answer.
+        Sizes of dimensions that are already known (for an answer: those of its question).
 
     Raises
     ------

@@ -106,7 +106,7 @@ def bound(
     files: Files,
     work: Annotated[float, typer.Option(min=0.0, help=WORK)] = 1.0,
 ) -> None:
-    """Prove bounds by Lagrangian prices, the relaxation and search; the last line is the best."""
+    """Prove bounds by Lagrangian prices, relaxation and search; the last line is the best bound."""
     from rmfs.solvers.decisions.bounding import bounds
 
     for path in expanded(files):
@@ -134,7 +134,7 @@ def convert(
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("results/exact"),
 ) -> None:
-    """Write the exact programme for any MIP solver, with a key to its columns; or read back."""
+    """Write the exact program for any MIP solver, with a key to its columns; or read a solution."""
     from rmfs.solvers.decisions.exact import exact
     from rmfs.solvers.decisions.exact.reading import answer_of
     from rmfs.solvers.decisions.exact.writing import write_map, write_program

@@ -65,8 +65,8 @@ class Decision:
     provenance
         Where the question comes from: run, simulated time, decision problem, controller.
     asked
-        How the controller asked the question: `by`, and the settings passed along with the data.
-        Empty if no controller asked it.
+        How the controller asked the question: its name (`by`), and the settings passed along with
+        the data. Empty if no controller asked it.
     recorded
         The answer given in the run, if there was one.
     """
@@ -84,7 +84,7 @@ class Decision:
 
     @property
     def hash(self) -> str:
-        """Hash that identifies the question, whoever asked it."""
+        """Hash of family and data, which identifies the question."""
         return content_hash(self.family, self.data)
 
     @property
@@ -108,7 +108,7 @@ def write(decision: Decision, folder: Path) -> bool:
 
     Returns
     -------
-    Whether it is new. A question that already exists there is not changed.
+    Whether the question is new. A question that already exists in the folder is not changed.
     """
     path = folder / f"{decision.name}.json.gz"
     if path.exists():

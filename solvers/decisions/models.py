@@ -45,7 +45,7 @@ _VALUES = {
     "replenishment": "Stocking",
     "run_bound": "Throughput",
 }
-"""Dataclass of the values; in other families the values are one array."""
+"""Dataclass of the values, for families whose values are not a single array."""
 
 _PARTS = {
     "weights": "Weights",

@@ -1,7 +1,7 @@
 """Definition of the questions and answers of each family (`rmfs-decision/1`).
 
 This is the definition of the format. It imports no model, so checking an answer does not rely on
-any.
+a model.
 """
 
 from __future__ import annotations

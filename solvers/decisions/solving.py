@@ -27,7 +27,7 @@ _COUNTED: dict[str, Literal["nodes", "iterations"]] = {
     "beam": "iterations",
     "hadgs": "iterations",
 }
-"""Field of `Limits` in which a method counts its work; the others count deterministic seconds."""
+"""Field of `Limits` in which a method counts its work, if not in deterministic seconds."""
 
 
 def methods(family: str) -> tuple[str, ...]:
@@ -42,14 +42,15 @@ def rule(family: str) -> str:
 
 
 def limits_of(method: str, work: float | None) -> Limits:
-    """Turn a limit of work into the unit in which a method counts.
+    """Return a limit of work as the `Limits` of a method.
 
     Parameters
     ----------
     method
         The method.
     work
-        Deterministic seconds; nodes of HiGHS; steps of local searches. None: no limit.
+        Number of nodes for HiGHS, of steps for local searches, and of deterministic seconds for
+        other methods. None: no limit.
     """
     if work is None:
         return NO_LIMITS

@@ -22,7 +22,7 @@ class ScheduleParameters(LevelParameters):
     period_s: Positive = 60.0
     """Seconds between schedules."""
     slot_share: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.1
-    """Length of a slot, given as the share of a battery that the most powerful place charges in it."""
+    """Length of a slot: the share of a battery that the most powerful place charges in this time."""
     slots: Count = 10
     """Number of slots to plan ahead."""
     longest: Count = 7
@@ -30,11 +30,11 @@ class ScheduleParameters(LevelParameters):
     worth: NotNegative = 1.15
     """Value of energy: robot time per time in which the most powerful place supplies the energy."""
     idle: Share = 0.6
-    """Cost of time for which a robot that is not needed is away from work, as a share of the cost of
-    time for which a robot is missing."""
+    """Cost of time away from work of a robot that is not needed, as a share of the cost of time for
+    which a robot is missing."""
     curve: Share = 0.2
-    """Curvature of the value of energy: in an empty battery, energy is worth 1 + `curve` times as much
-    as on average; in a full one, 1 - `curve` times as much."""
+    """Curvature of the value of energy, which is 1 + `curve` times the average in an empty battery,
+    and 1 - `curve` times the average in a full one."""
     margin_share: Share = 0.0
     """Safety margin, as a share of the capacity, above the level that is enough for any task. The
     model penalises levels below the sum."""

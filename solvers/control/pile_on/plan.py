@@ -28,7 +28,7 @@ class Planned:
 
 
 class Called(NamedTuple):
-    """The call of the optimiser that called a pod (None: a rule), and the robot for it (-1: any)."""
+    """The optimiser's call that called a pod (None: a rule), and the robot for it (-1: any)."""
 
     call: Call | None
     robot: int = -1
@@ -202,7 +202,8 @@ class Plan:
     def useful(self, pod: int, station: PickStation) -> bool:
         """Whether a pod can serve an open request of a station, and has no task.
 
-        A pod carried by a robot with a task counts as having one."""
+        A pod carried by a robot with a task counts as having one.
+        """
         inventory, at_hand = self._view.inventory, self._view.storage.is_at_hand.item
         return bool(at_hand(pod)) and inventory.serves(pod, list(station.requests.lines))
 

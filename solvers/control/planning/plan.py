@@ -153,7 +153,7 @@ class Plan:
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:
-        """Return the number of units that pods under way supply to orders with or without a slot."""
+        """Return how many units pods under way supply, to orders with and without a slot."""
         view, index = self._view, station.index
         coming = under_way(view, station)
         units = sum(len(task.picks) for task in station.tasks.values())

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision, Found
 
 TOLERANCE = 1e-6
-"""Tolerance, relative to the value, of a stated objective, and by which a bound may exceed it."""
+"""Tolerance of stated objectives and bounds, relative to the value."""
 
 
 def check(decision: Decision, found: Found) -> float:
@@ -32,12 +32,13 @@ def check(decision: Decision, found: Found) -> float:
 
     Returns
     -------
-    Its value.
+    The value of the answer.
 
     Raises
     ------
     WrongError
-        If a rule is broken, the stated objective is wrong, or the stated bound is beyond it.
+        If a rule is broken, the stated objective is wrong, or the stated bound contradicts the
+        value.
     """
     if found.values is None:
         raise WrongError("values: there are none")

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the sum of travel, lateness, waits behind other robots, and costs of tasks left."""
+    """Return the sum of travel, lateness, waits in queues, and costs of tasks left out."""
     robot = values["robot"].tolist()
     within("robot", robot, -1, len(data["arrive_s"]))
     once("robot", (one for one in robot if one >= 0))

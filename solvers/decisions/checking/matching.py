@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the sum of travel and costs of tasks left."""
+    """Return the sum of travel and costs of tasks left out."""
     robot = values["robot"].tolist()
     travel = data["travel_s"]
     within("robot", robot, -1, len(travel))

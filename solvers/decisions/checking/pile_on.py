@@ -14,7 +14,7 @@ NONE = -1
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the costs of calls, robots, empty slots and open units, less the rewards."""
+    """Return the costs of called pods, robots, empty slots and open units, less the rewards."""
     stations, pods = len(data["slots"]), len(data["stock"])
     slots = [row.nonzero()[0].tolist() for row in values["slot"]]
     covered, prospect = values["line_station"].tolist(), values["prospect"].tolist()

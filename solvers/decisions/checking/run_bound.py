@@ -1,4 +1,4 @@
-"""Check of the run bound: the inequalities of the linear programme."""
+"""Check of the run bound: the inequalities of the linear program."""
 
 from __future__ import annotations
 

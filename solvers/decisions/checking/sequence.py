@@ -15,7 +15,7 @@ SLACK_S = 1e-6
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Follow every route; return the sum of driving, lateness and costs of tasks left."""
+    """Follow every route; return the sum of driving, lateness and costs of tasks left out."""
     place, first = values["place"].tolist(), values["robot_place"].tolist()
     places, count = len(data["fetch_s"]), len(place)
     within("place", place, -1, places)

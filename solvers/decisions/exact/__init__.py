@@ -1,6 +1,6 @@
-"""Questions as mixed-integer programmes for any solver, and solutions of solvers as answers.
+"""Questions as mixed-integer programs for any solver, and solutions of solvers as answers.
 
-- `formulation`: the exact programme of each family; `pairs` and `routes` contain the programmes of
+- `formulation`: the exact program of each family; `pairs` and `routes` contain the programs of
   families that the models solve without a matrix;
 - `writing`: MPS and LP files; `reading`: solution files of solvers;
 - `external`: runs other solvers as commands.

@@ -1,4 +1,4 @@
-"""External solvers as commands, which read a programme and write a solution file.
+"""External solvers as commands, which read a program and write a solution file.
 
 None is required. A solver is given by its name, if its command is on the path, or as a command with
 the placeholders `{program}`, `{solution}` and `{seconds}`, which is split as by a shell but run
@@ -40,7 +40,7 @@ COMMANDS = {
 """Command of each known solver, according to its manual."""
 
 _GRACE_S = 30.0
-"""Seconds beyond its limit after which a command is ended, as solvers may not count reading."""
+"""Seconds after its time limit at which a command is stopped, as solvers may not count reading."""
 
 
 def available() -> tuple[str, ...]:
@@ -50,7 +50,7 @@ def available() -> tuple[str, ...]:
 
 
 def solve_externally(decision: Decision, solver: str, seconds: float, where: str = "") -> Found:
-    """Solve the exact programme of a question with an external solver.
+    """Solve the exact program of a question with an external solver.
 
     Parameters
     ----------

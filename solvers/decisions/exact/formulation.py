@@ -1,4 +1,4 @@
-"""The exact programme of a question, with named columns, and the conversion back to an answer."""
+"""The exact program of a question, with named columns, and the conversion back to an answer."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Exact:
-    """A programme whose optimum is that of the question.
+    """A program whose optimum is that of the question.
 
     Attributes
     ----------
     program
-        The programme, to be minimised.
+        The program, to be minimised.
     names
         Names of its columns.
     answer
         Turns column values into the fields of an answer.
     factor
-        Factor by which the programme's objective is multiplied to give the question's value.
+        Factor by which the program's objective is multiplied to give the question's value.
     square
         Cost coefficient of the square of each column, shape (n,); empty if there are none.
     """
@@ -49,7 +49,7 @@ class Exact:
 
 
 def exact(decision: Decision, where: str = "") -> Exact:
-    """Formulate the exact programme of a question.
+    """Formulate the exact program of a question.
 
     Parameters
     ----------
@@ -61,14 +61,14 @@ def exact(decision: Decision, where: str = "") -> Exact:
     Raises
     ------
     InputError
-        If the question is infeasible in a way that the programme cannot express.
+        If the question is infeasible in a way that the program cannot express.
     """
     made: Exact = _STATED[decision.family](model_data(decision, where), where or decision.name)
     return made
 
 
 def _of(family: str, stated: Formulation[Any]) -> Exact:
-    """Take over a programme of the models."""
+    """Take over a program of the models."""
     names = Names(stated.program.columns)
     stated.names(names)
     return Exact(stated.program, names, lambda x: plain_values(family, stated.decode(x)))

@@ -28,12 +28,13 @@ def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
     """Read the value of each column from a solution file.
 
     Supported are files whose lines contain a name followed by a value (HiGHS, SCIP, Gurobi, CBC,
-    GLPK), and the XML of CPLEX. A column that is not named is 0, or at its bound nearest to 0.
+    GLPK), and the XML of CPLEX. A column that is not named gets the value nearest to 0 within its
+    bounds.
 
     Parameters
     ----------
     stated
-        The programme.
+        The program.
     path
         The file.
 
@@ -67,7 +68,7 @@ def answer_of(decision: Decision, stated: Exact, path: Path, by: dict[str, objec
     decision
         The question.
     stated
-        Its programme.
+        Its program.
     path
         The solution file.
     by

@@ -1,8 +1,10 @@
-r"""The routes of robots as a mixed-integer programme with times.
+r"""The routes of robots as a mixed-integer program with times.
 
-Columns: whether a robot without a pod begins with task t (first); whether after owner o has stored
-its pod at place l, task t comes next (onward) or the route ends (last); whether t is left; and when
-its pod arrives at its station. An *owner* of a pod is robot r, or task R + t.
+The columns state whether a robot without a pod begins with task t (first); whether, after the pod
+of owner o has been stored at place l, task t comes next (onward) or the route ends (last); whether
+task t is left out; and when the pod of task t arrives at its station (arrive). The owner of a pod
+is the robot that carries it now (index r), or the task that brings it (index R + t, for R robots).
+Times of arrival are linked by a large constant M:
 
 .. math::
 
@@ -29,7 +31,7 @@ if TYPE_CHECKING:
 def routes(
     data: TaskSequence,
 ) -> tuple[LinearProgram, Names, Callable[[NDArray[np.float64]], Plain]]:
-    """Formulate the programme.
+    """Formulate the program.
 
     Parameters
     ----------

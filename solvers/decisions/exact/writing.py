@@ -28,12 +28,12 @@ FORMATS = ("mps", "lp")
 
 
 def write_program(stated: Exact, path: Path) -> None:
-    """Write a programme as MPS or LP, depending on the suffix of the file.
+    """Write a program as MPS or LP, depending on the suffix of the file.
 
     Parameters
     ----------
     stated
-        The programme.
+        The program.
     path
         `NAME.mps` or `NAME.lp`.
     """
@@ -49,7 +49,7 @@ def write_map(decision: Decision, stated: Exact, path: Path) -> None:
     decision
         The question.
     stated
-        Its programme.
+        Its program.
     path
         The file.
     """

@@ -1,9 +1,10 @@
 """The questions of the library, drawn from runs by a seeded procedure.
 
-For each size, kind of demand and seed, a site is simulated under each set of controllers that asks
-questions of the family. Its time is divided into thirds: early, middle, late. From each third, one
-question is drawn uniformly from the largest tenth (by array entries), because many questions
-concern only one robot or one slot. `derived` makes questions of families that no controller asks.
+For each size, kind of demand and seed, a site is simulated under a set of controllers that asks
+questions of the family (if there are two such sets, they take turns). The simulated time is divided
+into thirds: early, middle, late. From each third, one question is drawn uniformly from the largest
+tenth (by array entries), because many questions concern only one robot or one slot. `derived` makes
+questions of families that no controller asks.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ CONTROLLERS: Mapping[str, tuple[str, ...]] = {
     "replenishment": ("stocking",),
     "charging": ("ca-schedule",),
 }
-"""Shipped sets of controllers that ask each family; seeds alternate between them."""
+"""Shipped sets of controllers that ask questions of each family. Seeds alternate between them."""
 
 _PARAMETERS: Mapping[str, Mapping[str, Any]] = {
     "psa-prices": {"controllers.psa.period_s": 60.0},

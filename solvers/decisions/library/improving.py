@@ -45,7 +45,7 @@ STEPS_OF = {"planning": {"lns": 40_000.0, "highs": 10.0}}
 """Exceptions to `STEPS`, for families whose steps take microseconds or whose nodes take seconds."""
 
 LARGEST_EXACT = {"planning": 60_000}
-"""Size (pods times lines times stations) above which the exact programme is not searched."""
+"""Size (pods times lines times stations) above which the exact program is not searched."""
 
 
 @dataclass(frozen=True)
@@ -174,7 +174,7 @@ def _searches(
 
 
 def _is_searched(decision: Decision) -> bool:
-    """Whether the exact programme is small enough to be searched."""
+    """Whether the exact program is small enough to be searched."""
     most = LARGEST_EXACT.get(decision.family)
     if most is None:
         return True

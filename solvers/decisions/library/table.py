@@ -68,7 +68,7 @@ class Row:
 
     @property
     def gap(self) -> float:
-        """Difference of value and bound, relative to the larger; nan if either is missing."""
+        """Difference of value and bound, as a share of the larger; nan if either is missing."""
         apart = abs(self.value - self.bound)
         return 0.0 if apart == 0.0 else apart / max(abs(self.value), abs(self.bound))
 
