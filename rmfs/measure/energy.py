@@ -20,9 +20,9 @@ WH = 3600.0
 class EnergyLog:
     """Energy drawn by robots, if the scenario models it.
 
-    All that a robot draws from the end of one visit with picked units to the end of the next is
-    divided equally among the units of the latter: driving, waiting, storing the previous pod, and
-    the way to a charger.
+    The energy that a robot draws between the ends of two visits with picked units is divided
+    equally among the units of the second visit. It includes driving, waiting, storing the previous
+    pod, and the way to a charger.
 
     Attributes
     ----------

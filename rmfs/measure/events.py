@@ -73,7 +73,7 @@ class Happening(IntEnum):
     """A part of a split order left its slot (order, station)."""
     UNITS_BOUND = 19
     """A pod is brought to a station for units of an order (order, sku, pod, robot, station, units).
-    Picking a unit reduces them by one."""
+    Each pick of such a unit reduces their number by one."""
     UNITS_UNBOUND = 20
     """The pod no longer serves these units (columns as in `UNITS_BOUND`)."""
 

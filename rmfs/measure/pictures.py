@@ -36,7 +36,7 @@ ALIASES = {"throughput": "progression"}
 """Alternative names of plots."""
 
 FORMATS = {"png": "Software", "svg": "Date", "pdf": "CreationDate"}
-"""File suffix, and the metadata entry that would make files differ."""
+"""File suffixes, each with the metadata entry that is left out to keep files reproducible."""
 
 
 class Picture(Figure):

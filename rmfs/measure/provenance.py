@@ -203,10 +203,10 @@ def version() -> str:
 def commit() -> dict[str, Any]:
     """Return the commit of the checkout that this code runs from, and whether it is modified.
 
-    Changes in `results` are ignored, so that publishing one table does not mark the next one.
+    Changes in `results` are ignored, so that the code does not count as modified once a table has
+    been published.
 
-    Both are None if rmfs is installed from a wheel: a repository that merely contains the
-    environment does not track this file.
+    Both are None if rmfs is installed from a wheel, even if the environment lies in a repository.
     """
     here = Path(__file__)
     head = _git(here.parent, "rev-parse", "HEAD")

@@ -109,7 +109,7 @@ class Results(ABC):
         Returns
         -------
         Replay
-            The page: `path` is its file, and it can be opened like one.
+            The page: `path` is its file, and the object itself can be passed to `open`.
 
         Raises
         ------

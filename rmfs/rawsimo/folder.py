@@ -143,7 +143,7 @@ def _move(files: list[Path], goal: Path, folder: Path) -> None:
 
 
 Written = tuple[list[Path], list[str]]
-"""The files written for one file, and remarks."""
+"""What the import of one file returns: the files written, and remarks."""
 
 
 def _layout(path: Path, target: Path) -> Written:

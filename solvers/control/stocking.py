@@ -82,8 +82,8 @@ class StockingParameters(SearchParameters):
     gap: NotNegative = 0.01
     """Relative gap between value and bound at which the search ends."""
     leave_s: NotNegative = 20.0
-    """Cost of postponing a bundle, in seconds of a robot, in addition to the robot time that would be
-    saved by storing it."""
+    """Cost of postponing a bundle, in seconds of a robot, in addition to the robot time that would
+    be saved by storing it."""
     bundles: Count = 60
     """Maximum number of bundles considered, the oldest first."""
     pods_per_bundle: Count = 8

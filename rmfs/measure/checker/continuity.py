@@ -22,7 +22,7 @@ ROUNDING_S = 2e-6
 """Tolerance of durations, in s, as start and end are rounded to microseconds."""
 
 SAME_SPEED_M_S = 1e-9
-"""Tolerance of speeds, in m/s, as a share of a top speed is a rounded product."""
+"""Tolerance of speeds, in m/s, as a reduced top speed is a product and therefore rounded."""
 
 ANGLE_RAD = 1e-5
 """Tolerance of headings, in rad; over 100 m it causes a deviation of less than 1 mm."""

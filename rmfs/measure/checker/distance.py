@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     Mask = NDArray[np.bool_]
 
 ROUNDS = 40
-"""Number of halvings after which an interval counts as touching the limit without violating it;
-it is then 1e-12 of the motion, over which the squared distance changes by less than rounding
-errors."""
+"""Number of halvings after which an interval counts as touching the limit without violating it.
+The interval is then 1e-12 of the motion; over it, the squared distance changes by less than
+rounding errors."""
 
 EXACT = 1e-12
 """Squared distances that differ by less than this count as equal, in m²."""
@@ -40,7 +40,8 @@ _TO_BERNSTEIN = np.array(
         [1, 1, 1, 1, 1],
     ]
 )
-"""b_k = sum over j <= k of C(k, j) / C(4, j) a_j."""
+"""Matrix that converts coefficients a_j of powers to Bernstein coefficients b_k:
+b_k = sum over j <= k of C(k, j) / C(4, j) a_j, with binomial coefficients C."""
 
 
 def squared_distance(one: Pieces, other: Pieces) -> tuple[Floats, Floats, Floats]:
@@ -154,8 +155,8 @@ def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floa
     Returns
     -------
     tuple
-        Which pairs do, shape (K,), and the time in s and squared distance in m² of closest
-        approach.
+        Whether each pair does, shape (K,); and, for pairs that do, time (s) and squared distance
+        (m²) of the closest approach.
     """
     begin, end, power = squared_distance(one, other)
     hit = below(power, limit)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEGLIGIBLE_S = 2e-6
-"""Shorter rests at the end of a run get no piece, as ends are rounded to microseconds."""
+"""Rests at the end of a run shorter than this, in s, are due to rounding and get no piece."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +72,8 @@ def lengths(layout: Layout, trace: Trace) -> Floats:
 class Pieces:
     """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
 
-    Where a guided robot is on its way is not known; its piece of constant speed covers that way.
+    The trace of a guided robot states only its way, not where on the way it is at which time. Its
+    piece has constant speed and covers the whole way.
 
     Attributes
     ----------
@@ -106,7 +107,7 @@ class Pieces:
         return Pieces(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
 
     def at(self, time_s: Floats) -> tuple[Floats, Floats]:
-        """Return the position of each piece at its own time, in m."""
+        """Return the position of each piece, in m, at the time given for it."""
         tau = time_s - self.t0_s
         return (
             self.x_m + tau * (self.vx + tau * self.hx),
@@ -114,7 +115,7 @@ class Pieces:
         )
 
     def way(self, begin_s: Floats, end_s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return the ends x0, y0, x1, y1 of where every piece may be between two times, in m."""
+        """Return the line on which each piece may be between two times, as x0, y0, x1, y1 in m."""
         return (
             *self.at(np.where(self.guided, self.t0_s, begin_s)),
             *self.at(np.where(self.guided, self.t1_s, end_s)),

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 TOLERANCE_M = 1e-6
-"""Overlaps up to this size count as rounding errors."""
+"""Largest overlap that counts as a rounding error, in m."""
 
 
 def radii(layout: Layout, trace: Trace, limits: Kinematics) -> Floats:
@@ -40,8 +40,8 @@ def check(
     Returns
     -------
     tuple
-        One finding per pair of robots and time interval, and the number of pairs of motions
-        bounded.
+        One finding per pair of robots and time interval, and the number of pairs of motions whose
+        distance was bounded.
     """
     radius = radii(layout, trace, limits)[pieces.row]
     robot = trace.robot[pieces.row]

@@ -51,7 +51,7 @@ class Motion(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return distances, numbers and mean times of trips, and lifts, of the whole fleet."""
+        """Return distances, number and mean times of trips, and number of lifts, of the fleet."""
         motion, trips = run.recorder.motion, run.tables["trips"]
         lasted = trips["end_s"] - trips["start_s"]
         delay = (lasted - trips["unhindered_s"])[trips["kind"] != "to_station"]

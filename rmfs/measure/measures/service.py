@@ -78,7 +78,7 @@ class Service(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return on-time shares, lateness, and orders not done, at packing if there is any."""
+        """Return on-time shares, lateness, and orders not done (see `on_time_share`)."""
         orders, names = served(run.logs), class_names(run.logs)
         done, cancelled, overdue = orders["done"], orders["cancelled"], orders["overdue"]
         counted, in_time = done | overdue | cancelled, orders["on_time"]

@@ -83,9 +83,10 @@ class Potential(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the upper bound, the picked units as a share of it, and the rate at pile-on.
+        """Return the upper bound, the picked units as a share of it, and the rate at this pile-on.
 
-        All are nan if pickers have no shortest time. Warns if the bound is exceeded.
+        All are nan if there is no positive minimum of the pickers' handling times. A warning is
+        issued if the bound is exceeded.
         """
         duration_s = run.logs.duration_s
         layout = at_best(run.layout, run.world.staff)

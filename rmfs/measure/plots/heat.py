@@ -1,4 +1,4 @@
-"""Heat map of where robots drive and wait (paper, figure 5b)."""
+"""Heat map of where robots drive and wait, as in figure 5b of Merschformann, Xie and Li (2018)."""
 
 from __future__ import annotations
 

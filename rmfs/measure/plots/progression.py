@@ -1,4 +1,4 @@
-"""Picked units and distance per hour over time (paper, figure 5a)."""
+"""Units and distance per hour over time, as in figure 5a of Merschformann, Xie and Li (2018)."""
 
 from __future__ import annotations
 

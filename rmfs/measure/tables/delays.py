@@ -4,8 +4,8 @@ For each line, several moments lie between the arrival and the completion of its
 assigned to a station; a robot gets the task to bring the pod of the line's last unit; it lifts the
 pod; it enters the queue zone; it reaches the station; the unit has been handled; the order is
 complete. The time between each pair of moments has a name, and together they add up to the turnover
-of the order. Anything before the assignment of the order (a pod that was already under way) is not
-part of the order's time.
+of the order. If the pod was already under way when the order was assigned, the steps before the
+assignment do not count.
 """
 
 from __future__ import annotations

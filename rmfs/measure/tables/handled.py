@@ -83,7 +83,7 @@ def bundles(logs: Logs) -> pd.DataFrame:
 
 
 def seen_bundles(logs: Logs) -> pd.DataFrame:
-    """Return the bundles of the table of bundles, with their places in a file."""
+    """Return the bundles of the table of bundles, with their positions in the file of bundles."""
     frame = logs.bundles.rename(columns={"time_s": "stored_s"})
     frame = frame[~(frame["stored_s"] < logs.start_s)]
     return frame.sort_values("created_s", kind="stable", ignore_index=True)

@@ -78,7 +78,7 @@ class Logs:
 
     @cached_property
     def bundles(self) -> pd.DataFrame:
-        """All bundles that arrived; those not stored yet have neither time nor robot."""
+        """All bundles that arrived; those not stored yet have no time of storage and no robot."""
         waiting = [(*bundle_row(bundle), -1) for bundle in self.recorder.open_bundles.values()]
         return framed(self.recorder.bundles, waiting)
 

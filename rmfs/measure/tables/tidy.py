@@ -75,4 +75,4 @@ def _of_type(column: Any, dtype: Any, rows: int) -> Any:
 
 
 _PLAIN = {np.dtype(np.float64): float, np.dtype(np.int64): int}
-"""What one value must be to be converted without further questions."""
+"""Type of a single value that can be converted to each column type without checks."""

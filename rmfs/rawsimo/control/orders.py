@@ -93,7 +93,8 @@ _CRITERIA = {
     "FCFS": Rule("first-come"),
     "Random": Rule("random"),
 }
-"""Criterion of POA queue for a word in RAWSim-O's type, whose only element is its parameter."""
+"""Criteria of POA `queue`, by the word that stands for each in the name of RAWSim-O's type. A
+criterion has at most one parameter, which is the only element of this type."""
 
 ROA = {
     "Random": Rule(

@@ -171,7 +171,7 @@ def psa(kind: str, block: Settings) -> Table:
 
 
 def repositioning(kind: str, block: Settings) -> Table:
-    """Return the repositioning table for a repositioning."""
+    """Return the repositioning table for a repositioning method of RAWSim-O."""
     return translated(block, REPOSITIONING[kind]) | _zones(kind, block)
 
 

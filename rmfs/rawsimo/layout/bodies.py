@@ -30,7 +30,7 @@ def pods(
 ) -> tuple[list[Table], float]:
     """Return the pods, and the largest of their radii in m.
 
-    A pod stands at the waypoint that names it, or else at the nearest storage place of its tier.
+    A pod stands at the waypoint that names it, or else at the nearest storage location of its tier.
     """
     nearest = _Nearest(waypoints, [bool(waypoint["storage"]) for waypoint in waypoints])
     radii: Counter[float] = Counter()

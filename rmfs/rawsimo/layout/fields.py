@@ -30,7 +30,8 @@ class Problems:
         Raises
         ------
         InputError
-            One line with the first errors and the number of the rest.
+            If errors were added; the message is one line with the first errors and the number of
+            the others.
         """
         stop_if_any(self.found, source)
 

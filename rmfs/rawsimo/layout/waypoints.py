@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rmfs.rawsimo.layout.instance import Instance
 
 Occupants = dict[tuple[str, int], int]
-"""Position of the waypoint that names a pod or station, by its kind and position."""
+"""Number of the waypoint that names a pod or station, by kind and number of the pod or station."""
 
 
 def tiers(instance: Instance) -> list[Table]:
@@ -29,8 +29,8 @@ def tiers(instance: Instance) -> list[Table]:
 def waypoints(instance: Instance) -> tuple[list[Table], Occupants]:
     """Return the waypoints, still without edges, and which of them name pods and stations.
 
-    As in RAWSim-O a waypoint takes the position of the pod or station it names, and one with a pod
-    is a storage place.
+    As in RAWSim-O, a waypoint that names a pod or station takes its coordinates, and a waypoint
+    that names a pod is a storage location.
     """
     found: list[Table] = []
     occupants: Occupants = {}

@@ -27,7 +27,7 @@ def read_xinst(path: Path) -> tuple[Layout, list[str]]:
     Raises
     ------
     InputError
-        If the file cannot be read or does not describe a layout; names the errors.
+        If the file cannot be read or does not describe a layout; the message names the errors.
     """
     instance = Instance(read_root(path, "Instance"))
     instance.problems.stop(path)

@@ -33,7 +33,7 @@ class Arrivals:
     mode
         `backlog`, `poisson` or `stream`.
     letters
-        Whether orders are words.
+        Whether SKUs are letters and orders are words.
     file
         File of fixed orders.
     """

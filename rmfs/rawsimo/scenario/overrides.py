@@ -30,7 +30,8 @@ _COUNTS = {
 def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
     """Return the changes of the layout as pairs of path and value.
 
-    A switch is one element, and its value another element whose name begins with the switch's.
+    A switch is one element, and its value is another element whose name begins with that of the
+    switch.
 
     Raises
     ------

@@ -22,7 +22,7 @@ class ScheduleParameters(LevelParameters):
     period_s: Positive = 60.0
     """Seconds between schedules."""
     slot_share: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.1
-    """Length of a slot: the share of a battery that the most powerful place charges in this time."""
+    """Length of a slot: share of a battery that the most powerful place charges in this time."""
     slots: Count = 10
     """Number of slots to plan ahead."""
     longest: Count = 7
