@@ -38,8 +38,8 @@ class Decisions(Measure):
                 f"{source}_decision_share",
                 REAL,
                 "share",
-                f"Decisions {what} / decisions in all four of these columns; empty without "
-                "optimisers",
+                f"Decisions {what}, as a share of the decisions of all four kinds (optimiser, "
+                "heuristic, stale, failed); empty without optimisers",
                 better=LESS if source in ("stale", "failed") else NEITHER,
             )
             for source, what in SOURCES.items()
@@ -68,21 +68,21 @@ class Optimisers(Measure):
             REAL,
             "share",
             "Mean gap between value and bound of the optimisers' solutions, relative to the cost "
-            "of the pods called where that is known, else to the value; empty without any",
+            "of the pods called (pile-on models) or to the value; empty if no gap is known",
             better=LESS,
         ),
         Column(
             "optimiser_gap_abs_mean",
             REAL,
             "",
-            "Mean absolute gap, in the unit of the objectives, seconds for most models",
+            "Mean of abs(value - bound), in the unit of the objectives (seconds for most models)",
             better=LESS,
         ),
         Column(
             "paced_s",
             REAL,
             "s",
-            "Total simulated time from questions to optimisers to their answers",
+            "Total simulated time between questions to optimisers and their answers",
             better=LESS,
         ),
         Column(
@@ -96,7 +96,7 @@ class Optimisers(Measure):
             "optimiser_wall_s",
             REAL,
             "s",
-            "Wall time of all optimisers",
+            "Total wall time of all questions to optimisers",
             measured=True,
             better=LESS,
         ),
@@ -104,7 +104,7 @@ class Optimisers(Measure):
             "optimiser_wall_median_s",
             REAL,
             "s",
-            "Wall time of an optimiser, median",
+            "Median wall time of a question to an optimiser",
             measured=True,
             better=LESS,
         ),

@@ -19,8 +19,8 @@ class Disturbances(Measure):
             "disturbances",
             INTEGER,
             "disturbances",
-            "Breakdowns, slow robots, closed waypoints and elevators out of use in the measured "
-            "time",
+            "Number of breakdowns, periods of slow robots, closures of waypoints, and outages of "
+            "chargers and elevators that overlap the measured time",
         ),
         Column(
             "disturbed_s",

@@ -28,7 +28,7 @@ class Energy(Measure):
             "modelled",
             better=LESS,
         ),
-        Column("energy_wh_per_unit", REAL, "Wh", "energy_kwh / units_picked", better=LESS),
+        Column("energy_wh_per_unit", REAL, "Wh", "1,000 x energy_kwh / units_picked", better=LESS),
         Column(
             "energy_kwh_per_1000_units",
             REAL,
@@ -68,15 +68,15 @@ class Batteries(Measure):
             "energy_charged_kwh",
             REAL,
             "kWh",
-            "Energy charged at chargers and by swaps; empty without batteries, as are the "
-            "following columns",
+            "Energy charged at chargers and by swaps; this column and those up to "
+            "battery_level_least_share are empty without batteries",
         ),
-        Column("charging_share", REAL, "share", "Robot time spent at charging waypoints"),
+        Column("charging_share", REAL, "share", "Share of robot time spent at charging waypoints"),
         Column(
             "charge_task_share",
             REAL,
             "share",
-            "Robot time with a task charge: the way, waiting, and charging or swapping",
+            "Share of robot time with a charge task: driving there, waiting, charging or swapping",
             better=LESS,
         ),
         Column("charges", COUNT_OR_EMPTY, "tasks", "Number of charge tasks started"),
@@ -84,7 +84,7 @@ class Batteries(Measure):
             "robots_stranded",
             COUNT_OR_EMPTY,
             "robots",
-            "Number of times that a robot stopped because its battery level was below least_share",
+            "Number of times that a robot stopped because its battery was below its minimum level",
             better=LESS,
         ),
         Column(
@@ -97,7 +97,12 @@ class Batteries(Measure):
         Column(
             "battery_level_mean_share", REAL, "share", "Mean battery level, sampled every minute"
         ),
-        Column("battery_level_least_share", REAL, "share", "Least battery level in these samples"),
+        Column(
+            "battery_level_least_share",
+            REAL,
+            "share",
+            "Least battery level of a robot, sampled every minute",
+        ),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:

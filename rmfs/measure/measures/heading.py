@@ -18,7 +18,10 @@ class Heading(Measure):
         Column("layout", TEXT, "", "Name of the layout"),
         Column("scenario", TEXT, "", "Name of the scenario"),
         Column(
-            "controllers", TEXT, "", "Name of the set of controllers, and interactive exchanges"
+            "controllers",
+            TEXT,
+            "",
+            "Name of the set of controllers, followed by controllers exchanged interactively",
         ),
         Column("seed", INTEGER, "", "Seed of all random streams of the run"),
         Column("warmup_s", REAL, "s", "Simulated time before the measured time"),

@@ -43,8 +43,8 @@ class Motion(Measure):
             "trip_delay_mean_s",
             REAL,
             "s",
-            "Mean difference between the trip time and a lower bound of it without other robots; "
-            "trips to stations are excluded, since their bound depends on the queue place",
+            "Mean of trip time minus its lower bound without other robots; trips to stations are "
+            "excluded, since their bound depends on the queue place",
             better=LESS,
         ),
         Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
@@ -78,27 +78,36 @@ class RobotTime(Measure):
             "share",
             "Share of robot time with a task other than resting",
         ),
-        Column("robot_moving_share", REAL, "share", "Robot time driving"),
+        Column("robot_moving_share", REAL, "share", "Share of robot time spent driving"),
         Column(
             "robot_queueing_share",
             REAL,
             "share",
-            "Robot time from entering a station's queue zone to standing at the station; overlaps "
-            "with the other shares",
+            "Share of robot time between entering a station's queue zone and standing at the "
+            "station; overlaps with the other shares",
             better=LESS,
         ),
         Column(
             "robot_waiting_share",
             REAL,
             "share",
-            "Robot time standing on the way or in a queue",
+            "Share of robot time spent standing on the way or in a queue",
             better=LESS,
         ),
-        Column("robot_turning_share", REAL, "share", "Robot time turning on the spot"),
-        Column("robot_served_share", REAL, "share", "Robot time standing at a station"),
-        Column("robot_transfer_share", REAL, "share", "Robot time lifting or setting down a pod"),
-        Column("robot_riding_share", REAL, "share", "Robot time in an elevator"),
-        Column("robot_idle_share", REAL, "share", "Robot time standing idle"),
+        Column(
+            "robot_turning_share", REAL, "share", "Share of robot time spent turning on the spot"
+        ),
+        Column(
+            "robot_served_share", REAL, "share", "Share of robot time spent standing at a station"
+        ),
+        Column(
+            "robot_transfer_share",
+            REAL,
+            "share",
+            "Share of robot time spent lifting or setting down a pod",
+        ),
+        Column("robot_riding_share", REAL, "share", "Share of robot time spent in an elevator"),
+        Column("robot_idle_share", REAL, "share", "Share of robot time spent standing idle"),
         *(
             Column(f"tasks_{task}", INTEGER, "tasks", f"Number of {task} tasks started")
             for task in TASKS

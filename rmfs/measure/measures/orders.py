@@ -108,8 +108,7 @@ class Backlog(Measure):
             "orders_short",
             INTEGER,
             "orders",
-            "Orders for which stock was insufficient on arrival, given all earlier orders; they "
-            "wait",
+            "Orders that needed more units of a SKU on arrival than earlier orders left in stock",
             better=LESS,
         ),
     )

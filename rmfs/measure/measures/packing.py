@@ -25,7 +25,8 @@ class Packing(Measure):
             "orders_packed",
             COUNT_OR_EMPTY,
             "orders",
-            "Orders packed; empty without packing in the scenario, as are the following columns",
+            "Orders packed; this column and those up to packing_wait_mean_s are empty if the "
+            "scenario has no packing",
             better=MORE,
         ),
         Column(
@@ -48,20 +49,27 @@ class Packing(Measure):
             "Mean time from the arrival of an order until it is packed",
             better=LESS,
         ),
-        Column("order_cycle_p95_s", REAL, "s", "95th percentile of this time", better=LESS),
+        Column(
+            "order_cycle_p95_s",
+            REAL,
+            "s",
+            "95th percentile of the time from the arrival of an order until it is packed",
+            better=LESS,
+        ),
         Column(
             "consolidation_time_mean_s",
             REAL,
             "s",
-            "Mean time from the first tote of a split order at the wall to the last",
+            "Mean time from the arrival of the first tote of a split order at the wall to the "
+            "arrival of its last",
             better=LESS,
         ),
         Column(
             "wall_slots_mean",
             REAL,
             "slots",
-            "Time average of used slots of the put wall, from the arrival of a tote to that of "
-            "the last of its order; includes totes carried by hand",
+            "Time average of used slots of the put wall; the totes of an order, even those "
+            "carried by hand, use slots until the last one has arrived",
             better=LESS,
         ),
         Column("wall_slots_max", REAL, "slots", "Most slots in use at a time", better=LESS),
@@ -90,7 +98,7 @@ class Packing(Measure):
             "packer_busy_share",
             REAL,
             "share",
-            "Time of packers with a parcel; empty without a number of packers",
+            "Share of packers' time spent on parcels; empty if any number can pack at a time",
         ),
         Column(
             "packing_wait_mean_s",

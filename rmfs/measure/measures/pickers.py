@@ -21,8 +21,8 @@ class Pickers(Measure):
             "pickers_mean",
             REAL,
             "pickers",
-            "Time average of pickers present; empty without pickers in the scenario, as are the "
-            "following columns",
+            "Time average of pickers present; this column and those up to face_turns are empty if "
+            "the scenario has no pickers",
         ),
         Column(
             "pick_time_mean_s",
@@ -31,8 +31,18 @@ class Pickers(Measure):
             "Mean time for which a unit occupied its picker, rework included",
             better=LESS,
         ),
-        Column("pick_time_variation", REAL, "share", "Coefficient of variation of these times"),
-        Column("picker_busy_share", REAL, "share", "Time of pickers with a unit / time present"),
+        Column(
+            "pick_time_variation",
+            REAL,
+            "share",
+            "Coefficient of variation of the times for which units occupied their pickers",
+        ),
+        Column(
+            "picker_busy_share",
+            REAL,
+            "share",
+            "Time for which pickers handle units / time for which they are present",
+        ),
         Column(
             "picker_work_variation",
             REAL,
@@ -48,7 +58,13 @@ class Pickers(Measure):
             "Mean fatigue of the picker at the start of a pick",
             better=LESS,
         ),
-        Column("picker_fatigue_max", REAL, "share", "Greatest fatigue of a picker", better=LESS),
+        Column(
+            "picker_fatigue_max",
+            REAL,
+            "share",
+            "Greatest fatigue of a picker at the start of a pick",
+            better=LESS,
+        ),
         Column("pick_errors", COUNT_OR_EMPTY, "units", "Units picked wrongly", better=LESS),
         Column(
             "pick_errors_unnoticed",

@@ -58,7 +58,7 @@ class Safety(Measure):
             COUNT_OR_EMPTY,
             "events",
             "Overlaps of two bodies found by the independent trace checker, warm-up included; "
-            "empty if it did not run",
+            "empty if the trace was not checked",
             better=LESS,
         ),
     )

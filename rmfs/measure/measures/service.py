@@ -36,14 +36,14 @@ class Service(Measure):
             REAL,
             "share",
             "on_time_share of urgent orders: those of the first class (orders.due.mode = "
-            '"priority" or "classes"); empty without classes, as is the next column',
+            '"priority" or "classes"); empty without classes',
             better=MORE,
         ),
         Column(
             "on_time_ordinary_share",
             REAL,
             "share",
-            "on_time_share of all other orders",
+            "on_time_share of orders that are not urgent; empty without classes",
             better=MORE,
         ),
         Column(
@@ -60,7 +60,7 @@ class Service(Measure):
             "95th percentile of the lateness of the orders done, negative if early",
             better=LESS,
         ),
-        Column("lateness_max_s", REAL, "s", "Maximum of this lateness", better=LESS),
+        Column("lateness_max_s", REAL, "s", "Maximum lateness of the orders done", better=LESS),
         Column(
             "orders_overdue_end",
             INTEGER,

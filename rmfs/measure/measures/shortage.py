@@ -40,14 +40,14 @@ class ShortOrders(Measure):
             "orders_stuck_end",
             INTEGER,
             "orders",
-            "Orders waiting for a station at the end that stock cannot serve",
+            "Orders that wait for a station at the end and that stock cannot serve",
             better=LESS,
         ),
         Column(
             "oldest_stuck_end_s",
             REAL,
             "s",
-            "Age of the oldest of these orders; empty if there are none",
+            "Age of the oldest order counted in orders_stuck_end; empty if there is none",
             better=LESS,
         ),
     )

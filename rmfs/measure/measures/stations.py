@@ -32,13 +32,16 @@ class Stations(Measure):
             "1 - time in which the stations handle a bundle / (replenishment stations x duration)",
         ),
         Column(
-            "pick_station_active_share", REAL, "share", "Pick stations' time switched on / duration"
+            "pick_station_active_share",
+            REAL,
+            "share",
+            "Mean share of the measured time for which pick stations are switched on",
         ),
         Column(
             "replenishment_station_active_share",
             REAL,
             "share",
-            "Replenishment stations' time switched on / duration",
+            "Mean share of the measured time for which replenishment stations are switched on",
         ),
     )
 

@@ -45,7 +45,7 @@ class Visits(Measure):
             "late_bound_units_per_visit",
             REAL,
             "units",
-            "Units bound to a pod after its robot got the task, and picked / pick_visits",
+            "Picked units that were bound to the pod after its robot got the task, per pick visit",
             better=MORE,
         ),
     )

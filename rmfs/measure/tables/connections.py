@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 CONNECTIONS = (
     Column("from_waypoint", INTEGER, "", "Start of the trips"),
     Column("to_waypoint", INTEGER, "", "End of the trips"),
-    Column("from_kind", TEXT, "", "pick, replenishment, storage, elevator, queue or road"),
+    Column(
+        "from_kind",
+        TEXT,
+        "",
+        "Kind of the start: pick, replenishment, storage, elevator, queue or road",
+    ),
     Column("to_kind", TEXT, "", "Kind of the end, with the values of from_kind"),
     Column("trips", INTEGER, "trips", "Trips between the two, in this direction"),
     Column("time_mean_s", REAL, "s", "Mean trip time"),
@@ -34,8 +39,13 @@ EDGES = (
     Column("from_waypoint", INTEGER, "", "Start of the edge"),
     Column("to_waypoint", INTEGER, "", "End of the edge"),
     Column("ride", FLAG, "", "Whether it is an elevator ride to another tier"),
-    Column("passages", INTEGER, "passages", "Robots that drove it"),
-    Column("loaded_passages", INTEGER, "passages", "Robots that drove it with a pod"),
+    Column("passages", INTEGER, "passages", "Number of times that a robot used the edge"),
+    Column(
+        "loaded_passages",
+        INTEGER,
+        "passages",
+        "Number of times that a robot with a pod used the edge",
+    ),
 )
 
 

@@ -39,27 +39,27 @@ DECISIONS = (
         "time_s",
         REAL,
         "s",
-        "When a controller was asked and made a decision, or when it asked an optimiser, since "
-        "the start of the run",
+        "When a controller was called and made a decision, or when it asked an optimiser, in s "
+        "since the start of the run",
     ),
     Column("problem", TEXT, "", "Decision problem: roa, poa, rps, pps, psa, ta, sa, mm, ca"),
     Column(
         "source",
         TEXT,
         "",
-        "rule: a call of a controller, with the decisions it made itself; optimiser: a question "
-        "to an optimiser, with the decisions based on the answer. The columns after `wall_s` are "
-        "empty for rules",
+        "rule: the row is a call of a controller, with the decisions it made itself; optimiser: "
+        "the row is a question to an optimiser, with the decisions based on the answer. The "
+        "columns after `wall_s` are empty for rules",
     ),
-    Column("decisions", INTEGER, "decisions", "Decisions made; for optimisers applied + fallback"),
-    Column("wall_s", REAL, "s", "Wall time", measured=True),
+    Column("decisions", INTEGER, "decisions", "Decisions made; for optimisers, applied + fallback"),
+    Column("wall_s", REAL, "s", "Wall time of the call or question", measured=True),
     Column("call", COUNT_OR_EMPTY, "", "Number of the question, from the start of the run"),
     Column("sizes", TEXT, "", "Dimensions of the question"),
     Column("outcome", TEXT, "", "solution, nothing, failed, abandoned, or waiting at the end"),
     Column("failure", TEXT, "", "Reason for a failure"),
     Column("completed_s", REAL, "s", "When the answer took effect"),
     Column("paced_s", REAL, "s", "completed_s - time_s"),
-    Column("backend", TEXT, "", "Back end that solved it"),
+    Column("backend", TEXT, "", "Back end that solved the question"),
     Column("status", TEXT, "", "How the solver ended: optimal, feasible, infeasible, limit"),
     Column("objective", REAL, "", "Value of the solution, in the model's own unit"),
     Column("bound", REAL, "", "Proven bound on the best value"),
@@ -68,8 +68,8 @@ DECISIONS = (
         "gap",
         REAL,
         "share",
-        "gap_abs relative to the cost of the pods called (pile-on models; empty if none is) or "
-        "to abs(objective)",
+        "gap_abs relative to the cost of the pods called (pile-on models; empty if no pod is "
+        "called) or to abs(objective)",
     ),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
     Column(
@@ -78,7 +78,9 @@ DECISIONS = (
     Column("build_s", REAL, "s", "Wall time of building the solver's model", measured=True),
     Column("solve_s", REAL, "s", "Wall time of the solver without building", measured=True),
     Column("applied", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were applied"),
-    Column("stale", COUNT_OR_EMPTY, "decisions", "Decisions of it that were no longer valid"),
+    Column(
+        "stale", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were no longer valid"
+    ),
     Column(
         "fallback",
         COUNT_OR_EMPTY,
@@ -93,11 +95,11 @@ ANSWERS = (
     Column("state", TEXT, "", "Hash of the question and of the state of the world"),
     Column("requested_us", INTEGER, "µs", "Simulated time of the question"),
     Column(
-        "completed_us", INTEGER, "µs", "Simulated time of the effect of its answer; -1: not yet"
+        "completed_us", INTEGER, "µs", "Simulated time at which the answer took effect; -1: not yet"
     ),
     Column("outcome", TEXT, "", "As in `decisions`"),
     Column("failure", TEXT, "", "Reason for a failure"),
-    Column("backend", TEXT, "", "Back end that solved it; empty without an answer"),
+    Column("backend", TEXT, "", "Back end that solved the question; empty without an answer"),
     Column("status", TEXT, "", "How the solver ended; empty without an answer"),
     Column("objective", REAL, "", "Value of the solution"),
     Column("bound", REAL, "", "Proven bound on the best value"),
@@ -105,7 +107,7 @@ ANSWERS = (
     Column(
         "built", REAL, "", "Entries of the solver's model that were built, not included in work"
     ),
-    Column("scale", REAL, "", "Reference of the relative gap; empty: the objective"),
+    Column("scale", REAL, "", "Divisor of the relative gap; empty: abs(objective)"),
     Column("wall_s", REAL, "s", "Wall time of solver and building", measured=True),
     Column("build_s", REAL, "s", "Wall time of building", measured=True),
     Column("solution", TEXT, "", "The solution as JSON; empty without one"),
@@ -113,7 +115,7 @@ ANSWERS = (
 
 CONTROLLERS = (
     Column("problem", TEXT, "", "Decision problem"),
-    Column("calls", INTEGER, "calls", "Number of calls of its controller"),
+    Column("calls", INTEGER, "calls", "Number of calls of the controller of this problem"),
     Column("decisions", INTEGER, "decisions", "Decisions made"),
     Column("wall_s", REAL, "s", "Wall time of all calls", measured=True),
     Column("wall_mean_s", REAL, "s", "Mean wall time of a call", measured=True),
@@ -125,14 +127,16 @@ CONTROLLERS = (
         "heuristic_decisions",
         INTEGER,
         "decisions",
-        "Decisions made by its own rule; 0 for a controller that never asks optimisers",
+        "Decisions made by the controller's own rule; 0 if it never asks optimisers",
     ),
-    Column("stale_decisions", INTEGER, "decisions", "Decisions of solutions no longer valid"),
+    Column(
+        "stale_decisions", INTEGER, "decisions", "Decisions of solutions that were no longer valid"
+    ),
     Column(
         "failed_decisions",
         INTEGER,
         "decisions",
-        "Decisions by its own rule because an optimiser failed or found nothing",
+        "Decisions by the controller's own rule because an optimiser failed or found nothing",
     ),
 )
 

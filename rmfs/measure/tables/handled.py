@@ -21,7 +21,9 @@ PICKS = (
     Column("pod", INTEGER, "", "Pod"),
     Column("robot", INTEGER, "", "Robot that brought the pod"),
     Column("station", INTEGER, "", "Pick station"),
-    Column("late_bound", FLAG, "", "Whether it was bound after the robot got its task"),
+    Column(
+        "late_bound", FLAG, "", "Whether the unit was bound to the pod after the robot got its task"
+    ),
     Column(
         "picker",
         INTEGER,
@@ -29,13 +31,13 @@ PICKS = (
         "Picker, as in the table of pickers; -1 if the scenario has no pickers, in which case the "
         "following columns are empty, too",
     ),
-    Column("handling_s", REAL, "s", "How long it occupied the picker, rework included"),
+    Column("handling_s", REAL, "s", "Time for which the unit occupied the picker, rework included"),
     Column("layer", INTEGER, "", "Layer of the pod, 0 at the bottom; -1 if pods have none"),
     Column("fatigue", REAL, "share", "Fatigue of the picker at the start of the pick"),
     Column("error", FLAG, "", "Whether a wrong unit was picked"),
-    Column("noticed", FLAG, "", "Whether that was noticed and corrected"),
+    Column("noticed", FLAG, "", "Whether a wrong unit was noticed and corrected"),
     Column("face", INTEGER, "", "Face of the pod; -1 if pods have none"),
-    Column("turned", FLAG, "", "Whether the pod was turned at the station for it"),
+    Column("turned", FLAG, "", "Whether the pod was turned at the station for this unit"),
 )
 
 BUNDLES = (
@@ -45,9 +47,9 @@ BUNDLES = (
     Column("created_s", REAL, "s", "Arrival"),
     Column("assigned_s", REAL, "s", "When pod and station were both decided; empty if not yet"),
     Column("stored_s", REAL, "s", "Storage; empty if not yet"),
-    Column("pod", INTEGER, "", "Pod, -1 while undecided"),
-    Column("station", INTEGER, "", "Replenishment station, -1 while undecided"),
-    Column("robot", INTEGER, "", "Robot that brought the pod, -1 before"),
+    Column("pod", INTEGER, "", "Pod; -1 if not yet decided"),
+    Column("station", INTEGER, "", "Replenishment station; -1 if not yet decided"),
+    Column("robot", INTEGER, "", "Robot that brought the pod; -1 if not yet stored"),
     Column("turnover_s", REAL, "s", "stored_s - created_s"),
     Column("throughput_time_s", REAL, "s", "stored_s - assigned_s"),
 )
@@ -57,7 +59,7 @@ VISITS = (
     Column("pod", INTEGER, "", "Pod"),
     Column("robot", INTEGER, "", "Robot"),
     Column("begin_s", REAL, "s", "When the robot reached the station; may be in the warm-up"),
-    Column("end_s", REAL, "s", "When it was sent away; empty if not yet"),
+    Column("end_s", REAL, "s", "When the robot was sent away; empty if not yet"),
     Column("units", INTEGER, "units", "Units picked in the measured time"),
     Column("bundles", INTEGER, "bundles", "Bundles stored in the measured time"),
 )

@@ -27,7 +27,7 @@ TRIPS = (
     Column("to_waypoint", INTEGER, "", "End of the trip"),
     Column("start_s", REAL, "s", "When the robot got the command to drive"),
     Column("end_s", REAL, "s", "Arrival (for a station: at its queue zone)"),
-    Column("station", INTEGER, "", "Destination station, -1 for another kind"),
+    Column("station", INTEGER, "", "Destination station; -1 for other kinds of trips"),
     Column("loaded", FLAG, "", "Whether the robot carried a pod"),
     Column("distance_m", REAL, "m", "Distance driven"),
     Column(

@@ -20,27 +20,32 @@ if TYPE_CHECKING:
 
 ORDERS = (
     Column("order", INTEGER, "", "Ordinal of arrival, from the start of the run"),
-    Column("name", TEXT, "", "Its name in the file of orders; empty if it was drawn"),
-    Column("priority", TEXT, "", 'Its class; empty unless orders.due.mode = "classes"'),
-    Column("station", INTEGER, "", "Pick station, -1 while waiting for one"),
+    Column("name", TEXT, "", "Name of the order in the file of orders; empty if it was drawn"),
+    Column("priority", TEXT, "", 'Class of the order; empty unless orders.due.mode = "classes"'),
+    Column("station", INTEGER, "", "Pick station; -1 if not yet assigned"),
     Column("lines", INTEGER, "lines", "Order lines, without those cut to zero units"),
     Column("units", INTEGER, "units", "Units ordered"),
     Column("created_s", REAL, "s", "Arrival"),
     Column("due_s", REAL, "s", "Due time"),
     Column("assigned_s", REAL, "s", "Assignment to the station; empty if not yet"),
     Column("completed_s", REAL, "s", "Completion; empty if not yet"),
-    Column("cancelled_s", REAL, "s", "When it was cancelled for lack of stock; else empty"),
+    Column(
+        "cancelled_s",
+        REAL,
+        "s",
+        "When the order was cancelled for lack of stock; empty if it was not",
+    ),
     Column("units_cut", INTEGER, "units", "Units not delivered for lack of stock"),
     Column("turnover_s", REAL, "s", "completed_s - created_s"),
     Column("throughput_time_s", REAL, "s", "completed_s - assigned_s"),
     Column("lateness_s", REAL, "s", "completed_s - due_s; negative if early"),
-    Column("pods", INTEGER, "pods", "Pods from which units were picked for it so far"),
+    Column("pods", INTEGER, "pods", "Pods from which units of the order were picked so far"),
     Column(
         "energy_wh",
         REAL,
         "Wh",
-        "Energy drawn by robots for its units so far (docs/energy.md); empty if energy is not "
-        "modelled",
+        "Energy drawn by robots for the units of the order so far (docs/energy.md); empty if "
+        "energy is not modelled",
     ),
 )
 

@@ -17,32 +17,47 @@ PARCELS = (
     Column("order", INTEGER, "", "Ordinal of arrival of the order"),
     Column("totes", INTEGER, "totes", "Totes that have left pick stations; one per part"),
     Column("created_s", REAL, "s", "Arrival of the order"),
-    Column("due_s", REAL, "s", "Its due time"),
-    Column("picked_s", REAL, "s", "When its last tote left its pick station; empty if not yet"),
-    Column("arrived_s", REAL, "s", "When its first tote reached the wall; empty if none did"),
+    Column("due_s", REAL, "s", "Due time of the order"),
+    Column(
+        "picked_s",
+        REAL,
+        "s",
+        "When the last tote of the order left its pick station; empty if not yet",
+    ),
+    Column(
+        "arrived_s",
+        REAL,
+        "s",
+        "When the first tote of the order reached the wall; empty if none did",
+    ),
     Column(
         "consolidated_s",
         REAL,
         "s",
-        "When its last tote reached the wall; empty if not yet, or never",
+        "When the last tote of the order reached the wall; empty if not yet, or never",
     ),
-    Column("packing_s", REAL, "s", "When a packer started with it; empty if not yet"),
-    Column("packed_s", REAL, "s", "When it was packed; empty if not yet"),
+    Column("packing_s", REAL, "s", "When a packer started with the order; empty if not yet"),
+    Column("packed_s", REAL, "s", "When the order was packed; empty if not yet"),
     Column("cycle_s", REAL, "s", "packed_s - created_s"),
 )
 
 TOTES = (
     Column("order", INTEGER, "", "Ordinal of arrival of the order"),
     Column("station", INTEGER, "", "Pick station"),
-    Column("released_s", REAL, "s", "When it left the pick station"),
-    Column("arrived_s", REAL, "s", "When it reached the wall; empty if not yet, or never"),
+    Column("released_s", REAL, "s", "When the tote left the pick station"),
+    Column("arrived_s", REAL, "s", "When the tote reached the wall; empty if not yet, or never"),
     Column(
         "consolidated_s",
         REAL,
         "s",
         "When all totes of the order had arrived; empty if not yet, or never",
     ),
-    Column("by_hand", FLAG, "", "Carried by hand after its station had waited too long"),
+    Column(
+        "by_hand",
+        FLAG,
+        "",
+        "Whether it was carried by hand because its station had waited too long",
+    ),
 )
 
 

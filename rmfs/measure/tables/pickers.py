@@ -18,16 +18,26 @@ if TYPE_CHECKING:
     from rmfs.measure.tables.logs import Logs
 
 PICKERS = (
-    Column("picker", INTEGER, "", "Number; those of the first shift come first"),
+    Column("picker", INTEGER, "", "Number of the picker; pickers of the first shift come first"),
     Column("shift", INTEGER, "", "Number of the shift"),
     Column("station", INTEGER, "", "Pick station"),
-    Column("speed", REAL, "share", "Relative speed; 1: the station's times"),
+    Column("speed", REAL, "share", "Relative speed; with 1, times are those of the station"),
     Column("present_s", REAL, "s", "Time at the station"),
     Column("work_s", REAL, "s", "Part of present_s spent on units"),
     Column("busy_share", REAL, "share", "work_s / present_s; empty for pickers never present"),
     Column("units_picked", INTEGER, "units", "Units picked"),
-    Column("unit_mean_s", REAL, "s", "Mean time of a unit, rework included; empty without any"),
-    Column("fatigue_mean", REAL, "share", "Mean fatigue at the start of picks; empty without any"),
+    Column(
+        "unit_mean_s",
+        REAL,
+        "s",
+        "Mean time of a unit, rework included; empty if no unit was picked",
+    ),
+    Column(
+        "fatigue_mean",
+        REAL,
+        "share",
+        "Mean fatigue at the start of picks; empty if there were none",
+    ),
     Column("fatigue_max", REAL, "share", "Greatest fatigue at the start of a pick"),
     Column("errors", INTEGER, "units", "Units picked wrongly"),
     Column("errors_unnoticed", INTEGER, "units", "Wrongly picked units that were not noticed"),

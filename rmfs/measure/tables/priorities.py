@@ -25,8 +25,8 @@ PRIORITIES = (
         "priority",
         TEXT,
         "",
-        "Class of orders: its name in the scenario; urgent or ordinary in scenarios with these "
-        "two; else all",
+        "Class of orders: its name in the scenario; urgent or ordinary if the scenario has these "
+        "two classes; all if it has no classes",
     ),
     Column("weight", REAL, "", "Weight of the class's lateness"),
     Column("orders", INTEGER, "orders", "Orders done, cancelled, or overdue at the end"),
@@ -37,13 +37,22 @@ PRIORITIES = (
         "orders",
         "Orders past their due time and not done at the end",
     ),
-    Column("on_time_share", REAL, "share", "Orders done by their due time, of `orders`"),
+    Column("on_time_share", REAL, "share", "Orders done by their due time, as a share of `orders`"),
     Column("lateness_mean_s", REAL, "s", "Mean lateness of the orders done; negative if early"),
-    Column("lateness_p95_s", REAL, "s", "95th percentile of this lateness"),
-    Column("lateness_max_s", REAL, "s", "Maximum of this lateness"),
-    Column("late_by_mean_s", REAL, "s", "Mean of lateness, with 0 for orders done on time"),
-    Column("cycle_mean_s", REAL, "s", "From arrival until done, mean of the orders done"),
-    Column("cycle_p95_s", REAL, "s", "95th percentile of this time"),
+    Column("lateness_p95_s", REAL, "s", "95th percentile of the lateness of the orders done"),
+    Column("lateness_max_s", REAL, "s", "Maximum lateness of the orders done"),
+    Column(
+        "late_by_mean_s", REAL, "s", "Mean tardiness of the orders done: lateness, or 0 if on time"
+    ),
+    Column(
+        "cycle_mean_s",
+        REAL,
+        "s",
+        "Mean time from arrival until the order is done, over the orders done",
+    ),
+    Column(
+        "cycle_p95_s", REAL, "s", "95th percentile of the time from arrival until the order is done"
+    ),
 )
 
 

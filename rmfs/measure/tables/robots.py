@@ -23,7 +23,7 @@ STATES = ("moving", "turning", "waiting", "served", "transfer", "riding", "idle"
 
 ROBOTS = (
     Column("robot", INTEGER, "", "Robot"),
-    Column("kind", INTEGER, "", "Robot kind of the layout"),
+    Column("kind", INTEGER, "", "Number of the robot's kind in the layout"),
     Column("distance_m", REAL, "m", "Distance driven"),
     Column("loaded_distance_m", REAL, "m", "Distance driven with a pod"),
     *(
@@ -48,8 +48,8 @@ ROBOTS = (
         )
     ),
     Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
-    Column("units_picked", INTEGER, "units", "Units picked from pods it brought"),
-    Column("bundles_stored", INTEGER, "bundles", "Bundles stored in pods it brought"),
+    Column("units_picked", INTEGER, "units", "Units picked from pods that the robot brought"),
+    Column("bundles_stored", INTEGER, "bundles", "Bundles stored in pods that the robot brought"),
     *(
         Column(name, REAL, unit, f"{meaning}; empty if energy is not modelled")
         for name, unit, meaning in (

@@ -52,12 +52,17 @@ SERIES = (
         "share",
         "Space used / capacity of all pods, at the end of the interval",
     ),
-    Column("pick_station_busy_share", REAL, "share", "Pick stations' time spent handling units"),
+    Column(
+        "pick_station_busy_share",
+        REAL,
+        "share",
+        "Share of the interval that pick stations spent handling units",
+    ),
     Column(
         "replenishment_station_busy_share",
         REAL,
         "share",
-        "Replenishment stations' time spent handling bundles",
+        "Share of the interval that replenishment stations spent handling bundles",
     ),
     *(
         Column(
@@ -78,7 +83,7 @@ SERIES = (
             "transfer": "lifting or setting down",
             "riding": "in an elevator",
             "idle": "standing idle",
-            "queueing": "in queue zones (overlaps with the others)",
+            "queueing": "between a queue zone's border and its station (overlaps with the others)",
         }.items()
     ),
     Column(

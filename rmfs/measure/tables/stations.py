@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 STATIONS = (
     Column("station", INTEGER, "", "Number in the common numbering: pick stations come first"),
     Column("kind", TEXT, "", "pick, replenishment, or the name of another kind"),
-    Column("waypoint", INTEGER, "", "Where the robot stands while its pod is served"),
+    Column("waypoint", INTEGER, "", "Waypoint at which the robot stands while its pod is served"),
     Column("tier", INTEGER, "", "Floor"),
     Column("x_m", REAL, "m", "Position"),
     Column("y_m", REAL, "m", "Position"),
@@ -43,7 +43,7 @@ STATIONS = (
         "late_bound_units",
         INTEGER,
         "units",
-        "Units picked that were bound after the robot got its task",
+        "Picked units that were bound to the pod after its robot got the task",
     ),
     Column("lines_picked", INTEGER, "lines", "Lines finished"),
     Column("orders_completed", INTEGER, "orders", "Orders completed"),
@@ -51,19 +51,33 @@ STATIONS = (
     Column("busy_s", REAL, "s", "Time spent handling units or bundles"),
     Column("idle_share", REAL, "share", "1 - busy_s / duration"),
     Column("active_share", REAL, "share", "Time switched on / duration"),
-    Column("units_per_h_at_pile_on", REAL, "1/h", "See footprint; pick stations only"),
+    Column(
+        "units_per_h_at_pile_on",
+        REAL,
+        "1/h",
+        "As in `footprint`, for this station; pick stations only",
+    ),
     Column("units_per_visit", REAL, "units", "Pile-on: units_picked / visits"),
     Column("orders_per_visit", REAL, "orders", "orders_completed / visits"),
     Column("bundles_per_visit", REAL, "bundles", "bundles_stored / visits"),
-    Column("order_slots", INTEGER, "orders", "Maximum number of open orders; 0 for other kinds"),
     Column(
-        "capacity", REAL, "space units", "Maximum space of bundles; replenishment stations only"
+        "order_slots",
+        INTEGER,
+        "orders",
+        "Maximum number of open orders at a time; 0 for other kinds",
+    ),
+    Column(
+        "capacity",
+        REAL,
+        "space units",
+        "Maximum space of the bundles assigned to it at a time; replenishment stations only",
     ),
     Column(
         "without_work_share",
         REAL,
         "share",
-        "Share of the time without an assigned order (bundle); empty for other kinds",
+        "Share of the measured time in which no order (pick) or bundle (replenishment) was "
+        "assigned to the station; empty for other kinds",
     ),
 )
 

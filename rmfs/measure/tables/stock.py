@@ -21,24 +21,29 @@ PODS = (
     Column("pod", INTEGER, "", "Pod"),
     Column("capacity", REAL, "space units", "Capacity"),
     Column("used_end", REAL, "space units", "Space used by stored units at the end"),
-    Column("waypoint_end", INTEGER, "", "Where it stands at the end; -1 if carried"),
-    Column("lifts", INTEGER, "lifts", "Number of times it was lifted"),
-    Column("pick_visits", INTEGER, "visits", "Visits to pick stations with units picked"),
-    Column("replenishment_visits", INTEGER, "visits", "Visits with bundles stored"),
-    Column("units_picked", INTEGER, "units", "Units picked from it"),
-    Column("bundles_stored", INTEGER, "bundles", "Bundles stored in it"),
+    Column(
+        "waypoint_end",
+        INTEGER,
+        "",
+        "Waypoint at which the pod stands at the end; -1 if it is carried",
+    ),
+    Column("lifts", INTEGER, "lifts", "Number of times the pod was lifted"),
+    Column("pick_visits", INTEGER, "visits", "Visits to pick stations in which units were picked"),
+    Column("replenishment_visits", INTEGER, "visits", "Visits in which bundles were stored"),
+    Column("units_picked", INTEGER, "units", "Units picked from the pod"),
+    Column("bundles_stored", INTEGER, "bundles", "Bundles stored in the pod"),
 )
 
 SKUS = (
     Column("sku", INTEGER, "", "SKU"),
     Column("name", TEXT, "", "Name in the file of SKUs, or the number if it has no name"),
-    Column("popularity", REAL, "", "Weight in the scenario"),
+    Column("popularity", REAL, "", "Relative weight with which the SKU is ordered"),
     Column("space", REAL, "space units", "Space of one unit"),
     Column("lines_picked", INTEGER, "lines", "Order lines finished"),
     Column("units_picked", INTEGER, "units", "Units picked"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored"),
     Column("units_end", INTEGER, "units", "Units on pods at the end"),
-    Column("pods_end", INTEGER, "pods", "Pods that hold it at the end"),
+    Column("pods_end", INTEGER, "pods", "Pods that hold units of the SKU at the end"),
 )
 
 
