@@ -41,13 +41,13 @@ class Foresight(Measure):
     """
 
     columns = (
-        Column("stays", INTEGER, "stays", "Stays whose storage places were optimised"),
+        Column("stays", INTEGER, "stays", "Stays whose storage locations were optimised"),
         Column(
             "foresight_storage_s",
             REAL,
             "s",
             "Upper bound on the unhindered loaded driving that perfect foresight of the next "
-            "visits could have saved by other storage places (PSA)",
+            "visits could have saved by other storage locations (PSA)",
         ),
         Column(
             "foresight_storage_share",

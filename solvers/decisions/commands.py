@@ -49,7 +49,7 @@ def solve(
             "--with",
             metavar="SOLVER",
             help="External solver instead: highs, scip, gurobi, cplex or cbc, given the exact "
-            "programme as MPS; or a command with {program}, {solution} and {seconds}. "
+            "program as MPS; or a command with {program}, {solution} and {seconds}. "
             "[default: our own methods]",
             show_default=False,
         ),

@@ -43,11 +43,11 @@ def pods(
             tier = instance.position("Tier", fields.whole("Tier"), fields.label)
             waypoint = nearest.to(fields.number("X"), fields.number("Y"), tier)
             if waypoint is None:
-                instance.problems.add(f"{fields.label}: no storage place on its tier")
+                instance.problems.add(f"{fields.label}: no storage location on its tier")
         found.append({"waypoint": waypoint or 0, "capacity": fields.number("Capacity")})
     if searched:
         instance.remarks.append(
-            f"{searched} pods named by no waypoint: put at the nearest storage place"
+            f"{searched} pods named by no waypoint: put at the nearest storage location"
         )
     if len(radii) > 1:
         instance.remarks.append(f"pods of {len(radii)} radii: the largest is used for all")

@@ -93,5 +93,5 @@ class Ahead(PodStorageAssignment[P]):
 
 
 def _will_store(robot: Robot) -> bool:
-    """Whether a robot carries a pod to a station, or waits for a storage place."""
+    """Whether a robot carries a pod to a station, or waits for a storage location."""
     return robot.pod >= 0 and (robot.task is None or robot.task.station >= 0)

@@ -55,7 +55,7 @@ def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
             x[column] = value
             named = True
     if not named and program.columns:
-        raise InputError(f"{path}: names no column of the programme")
+        raise InputError(f"{path}: names no column of the program")
     x[program.integer] = np.rint(x[program.integer])
     return x
 
