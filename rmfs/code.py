@@ -21,7 +21,8 @@ SUFFIXES = (".py", ".so", ".pyd")
 def code_hash() -> str:
     """Return a hash of the Python files and the compiled core, 16 hexadecimal digits.
 
-    `NOT_SIMULATED` is left out. Uncommitted changes in a checkout change the hash, too.
+    The sub-packages in `NOT_SIMULATED` are left out. Uncommitted changes in a checkout change the
+    hash, too.
     """
     root = Path(__file__).resolve().parent
     state = hashlib.sha256()

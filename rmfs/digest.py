@@ -8,14 +8,17 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 
 OMITTED = "omitted"
-"""Metadata of a field that is not hashed while it is empty, so adding it changes no older hash."""
+"""Metadata key of fields that are left out of the hash while they are empty.
+
+A dataclass can thus get a new field without a change of the hashes of its older values.
+"""
 
 
 def digest(value: object) -> str:
     """Return the SHA-256 of a value, 64 hexadecimal digits.
 
     The value is made of arrays, numbers, strings, dataclasses, dicts, tuples and lists. An object
-    with a method `digested` is hashed by what that method returns.
+    with a method `digested` is represented by the return value of that method.
     """
     state = hashlib.sha256()
     _feed(state, value)

@@ -106,7 +106,7 @@ def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True
         Name of a file that identifies folders of this kind: an existing folder without this file
         is replaced only if it is empty.
     what
-        What messages call a folder of this kind.
+        Name of this kind of folder in messages.
     replace
         Whether an existing folder of this kind may be replaced. Default True.
 

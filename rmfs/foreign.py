@@ -1,4 +1,4 @@
-"""Files of other systems: chooses the reader by the file's suffix.
+"""Reading of files of other systems; the suffix of a file determines its reader.
 
 Readers are named here and imported only when one of their files is loaded; nothing else in the
 simulator knows the formats of other systems.
@@ -28,12 +28,12 @@ def read(path: Path) -> Any:
     Returns
     -------
     Any
-        What that reader returns; see its documentation.
+        The return value of that reader; see its documentation.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or no reader has its suffix.
+        If the file cannot be read, or there is no reader for its suffix.
     """
     reader = _READERS.get(path.suffix.lower())
     if reader is None:

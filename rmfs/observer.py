@@ -32,7 +32,7 @@ class MotionCounts(TravelTimes, Protocol):
         ...
 
     def heat(self) -> dict[str, NDArray[Any]]:
-        """Return visits and waiting times (s) of robots at waypoints, by name."""
+        """Return, by name, arrays with the visits and waiting times (s) of robots at waypoints."""
         ...
 
     def trips(self) -> dict[str, NDArray[Any]]:
@@ -44,14 +44,17 @@ class MotionCounts(TravelTimes, Protocol):
         ...
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return energies of each robot by name, such as those drawn and charged, in J.
+        """Return energies by name, such as energy drawn and charged, each of shape (R,), in J.
 
-        Only if the scenario models energy.
+        May be called only if the scenario models energy.
         """
         ...
 
     def used_j(self, robot: int) -> float:
-        """Return the energy drawn by a robot since time zero, in J; only with an energy model."""
+        """Return the energy drawn by a robot since time zero, in J.
+
+        May be called only if the scenario models energy.
+        """
         ...
 
     def counters(self) -> dict[str, float]:
@@ -69,7 +72,7 @@ class Troubles(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Observed:
-    """The state of a run as observers see it: to be read, never to be changed.
+    """The state of a run as observers see it. Observers read it but must not change it.
 
     Attributes
     ----------
@@ -120,10 +123,10 @@ class Observer:
         """Report that POA assigned an order to a pick station (`station`, `assigned_s`)."""
 
     def order_queued(self, order: Order) -> None:
-        """Report that an order moved from the backlog to a station's pool (`order.queued_at`)."""
+        """Report that an order of the backlog joined a station's pool (`order.queued_at`)."""
 
     def picks_changed(self, time_s: float, robot: int) -> None:
-        """Report that requests were bound to the pod of a robot's pick task, or reopened."""
+        """Report a change of a robot's pick task: requests were bound to its pod, or reopened."""
 
     def unit_picked(
         self,
@@ -137,7 +140,7 @@ class Observer:
     ) -> None:
         """Report that the pick of a unit starts.
 
-        `late_bound`: the unit was added to the pod's task after the task had begun.
+        `late_bound` is true if the unit was added to the pod's task after the task had begun.
         """
 
     def unit_handled(self, handled: Handled) -> None:
@@ -147,7 +150,10 @@ class Observer:
         """Report that a picker leaves a pick station, having been there during [from_s, to_s)."""
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
-        """Report that the pick of an order line's last unit starts; `units`: all of the line."""
+        """Report that the pick of an order line's last unit starts.
+
+        `units` is the number of units of the whole line.
+        """
 
     def order_completed(self, order: Order) -> None:
         """Report that an order, with all its parts, has left the stations (`completed_s`)."""
@@ -180,43 +186,56 @@ class Observer:
         """Report that the transfer of a bundle into its pod starts (`bundle.stored_s`)."""
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """Report that a robot reached the head of a station's queue; pod -1 if it carries none."""
+        """Report that a robot reached the head of a station's queue.
+
+        `pod` is -1 if the robot carries none.
+        """
 
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """Report that a robot leaves the head of a station's queue; pod -1 if it carries none."""
+        """Report that a robot leaves the head of a station's queue.
+
+        `pod` is -1 if the robot carries none.
+        """
 
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
         """Report that a station is busy with one unit, bundle, visit or robot in [from_s, to_s)."""
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """Report that a robot starts a task of a kind (`Task.kind`); station -1 if it has none."""
+        """Report that a robot starts a task.
+
+        `kind` is the `Task.kind` of the task; `station` is -1 if the task leads to no station.
+        """
 
     def robot_free(self, robot: int) -> None:
         """Report that a robot's task ended and it needs a new one."""
 
     def place_left(self, robot: int) -> None:
-        """Report that a robot left storage places that were reserved for it."""
+        """Report that a robot left storage locations that were reserved for it."""
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
         """Report that a robot starts to lift a pod."""
 
     def pod_set_down(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
-        """Report that a robot has set down its pod at a storage place."""
+        """Report that a robot has set down its pod at a storage location."""
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """Report a call of a controller, which took `wall_s` of wall time.
 
-        `decisions` excludes those based on an optimiser's solution, which the `Call` counts.
+        `decisions` is the number of decisions made, without those based on an optimiser's
+        solution, which the `Call` counts.
         """
 
     def rule_decided(self, problem: str, time_s: float) -> None:
-        """Report that a controller that asks optimisers made a decision by its own rule."""
+        """Report that a controller with an optimiser made a decision by its own rule instead."""
 
     def optimiser_asked(self, call: Call) -> None:
         """Report that a controller asked an optimiser a question."""
 
     def optimiser_answered(self, call: Call) -> None:
-        """Report that an answer arrived or the call failed; parts of it may be applied later."""
+        """Report that an optimiser answered or that the call to it failed.
+
+        Parts of the answer may be applied later.
+        """
 
     def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
         """Report that another controller, the rule `name`, was installed for a problem."""

@@ -69,7 +69,8 @@ _INSTALLED_ONLY: ContextVar[bool] = ContextVar("_INSTALLED_ONLY", default=False)
 def installed_only() -> Iterator[None]:
     """Return a context in which `require_allowed` refuses references to code.
 
-    For requests, such as those of a page, that may name installed classes but not run code.
+    It is used for requests, such as those from a web page, which may name installed classes but
+    must not run code of their own.
     """
     token = _INSTALLED_ONLY.set(True)
     try:
@@ -155,7 +156,7 @@ def name_of(found: type) -> str:
 def plain(value: Any, name: Callable[[type], str]) -> Any:
     """Return a value with classes replaced by names, and with plain Python types throughout.
 
-    Tuples become lists, paths strings, and scalars of NumPy numbers of Python.
+    Tuples become lists, paths become strings, and NumPy scalars become Python numbers.
 
     Parameters
     ----------
@@ -181,7 +182,7 @@ def _remembered(found: type) -> str:
 
 
 def source_file(found: type) -> Path | None:
-    """Return the file that defines a class; None if there is none, as for one typed at a prompt."""
+    """Return the file that defines a class; None for a class typed at a prompt, for example."""
     try:
         return Path(inspect.getfile(found))
     except (OSError, TypeError):

@@ -19,7 +19,7 @@ TILE_BYTES = 1600
 WAYPOINT_BYTES = 3200
 """Bytes of a run per waypoint, for tables of travel times and the planner's timetables."""
 STOCK_BYTES = 24
-"""Bytes of a run per SKU and pod, for units, free units, and those drawn at the start."""
+"""Bytes of a run per SKU and pod, for contained, available and initially drawn units."""
 SKU_BYTES = 400
 ORDER_BYTES = 1000
 """Bytes of a run per order waiting at time zero."""
@@ -35,7 +35,7 @@ def forced(force: bool = True) -> Iterator[None]:
     Parameters
     ----------
     force
-        False: `require` refuses such work, as it does outside of any context.
+        If false, `require` refuses such work, as it does outside of any context.
     """
     token = _force.set(force)
     try:
@@ -75,7 +75,8 @@ def spoken(size: float) -> str:
 def available() -> float:
     """Return how many bytes this process may still allocate; infinite if that is unknown.
 
-    This is the lesser of the machine's available memory and the rest of the process's own limit.
+    This is the machine's available memory or, if that is less, what is left of the process's own
+    limit.
     """
     limits = [float("inf")]
     try:

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 
 class OrderBacklog:
-    """Orders not yet assigned to a pick station.
+    """Orders not yet assigned to a pick station: B orders with at most L lines each.
 
     Attributes
     ----------
     orders
         Orders by index, in order of arrival.
     at_row
-        The order of each matrix row.
+        The order in each row of the matrix.
     """
 
     def __init__(self) -> None:
@@ -99,7 +99,7 @@ class OrderBacklog:
         self.orders[order.index] = order
 
     def remove(self, order: Order) -> None:
-        """Remove an order; the last row takes its place."""
+        """Remove an order; the last row of the matrix moves to the row of this order."""
         del self.orders[order.index]
         row = self._row_of.pop(order.index)
         last = self.at_row.pop()
@@ -131,11 +131,11 @@ class OrderBacklog:
             self._units[row, column] = line.open_units
 
     def queue_changed(self, order: Order) -> None:
-        """Update the pool of an order after it has joined or left one."""
+        """Update the entry for an order that has joined or left a station's pool."""
         self._queued_at[self._row_of[order.index]] = order.queued_at
 
     def after(self, index: int) -> list[Order]:
-        """Return the orders with a greater index than this one, latest first."""
+        """Return the orders with a greater index than the given one, latest first."""
         newer = []
         for order in reversed(self.orders.values()):
             if order.index <= index:
@@ -144,7 +144,7 @@ class OrderBacklog:
         return newer
 
     def servable(self, stock: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Whether stock suffices for each order if it were the only one, shape (B,).
+        """Whether stock would suffice for each order if there were no others, shape (B,).
 
         Parameters
         ----------
@@ -171,7 +171,9 @@ class OrderBacklog:
 
 
 class BundleBacklog:
-    """Bundles that are not assigned yet, as a pod or a station is lacking or not released.
+    """Bundles that are not assigned yet.
+
+    A bundle is assigned when its station is chosen and the choice of its pod is released.
 
     Attributes
     ----------
@@ -182,7 +184,8 @@ class BundleBacklog:
     unreleased
         By pod, the bundles promised to it but not released.
     unreleased_since_s
-        By pod, the time in s at which the last of these was promised, earliest first.
+        By pod, the time in s at which the last of its unreleased bundles was promised; pods are
+        sorted by this time.
     released
         By pod, the released bundles without a station, the pod released first at the front.
     space

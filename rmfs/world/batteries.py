@@ -143,7 +143,7 @@ def initial_j(given: Battery, robots: int, draw: Callable[[int], NDArray[np.floa
     Parameters
     ----------
     draw
-        Function that draws as many numbers as its argument, uniformly from [0, 1).
+        Function that draws the given number of random numbers, uniformly from [0, 1).
     """
     low, high = given.initial_least_share, given.initial_most_share
     return (low + (high - low) * draw(robots)) * given.capacity_wh * J_PER_WH

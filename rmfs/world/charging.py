@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False)
 class ChargeTask(VisitTask):
-    """Go to an energy station, without a pod.
+    """The task of going to an energy station without a pod.
 
     Attributes
     ----------

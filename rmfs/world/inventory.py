@@ -160,7 +160,10 @@ class Inventory:
         self.stock(pod, sku, units)
 
     def demand(self, sku: int, units: int) -> None:
-        """Count units of a new order in the backlog as ordered, wanted and not uncommitted."""
+        """Count units of a new order in the backlog.
+
+        They are added to `ordered` and `wanted`, and subtracted from `uncommitted`.
+        """
         self._uncommitted[sku] -= units
         self._wanted[sku] += units
         self._ordered[sku] += units
@@ -171,9 +174,10 @@ class Inventory:
         self._wanted[sku] -= units
 
     def commit(self, sku: int, units: int) -> None:
-        """Subtract units from `free_stock`: for an order at a station, or as a pod was bound to it.
+        """Subtract units from `free_stock`; a negative number adds them again.
 
-        A negative number adds them again.
+        This is due when an order is assigned to a station, or when requests of a queued order are
+        bound to a pod.
         """
         self._free_stock[sku] -= units
 

@@ -6,10 +6,10 @@ _MOST = 16
 
 
 class News:
-    """Notifies followers of the numbers of things that have changed, such as stations.
+    """Notifications of which things, such as stations, have changed; things are numbered from 0.
 
-    An exchanged controller does not unsubscribe, so the number of followers is limited. To a
-    follower that was dropped and takes news again, everything counts as changed.
+    An exchanged controller does not unsubscribe, so the number of followers is limited: the oldest
+    are dropped. If a dropped follower asks for changes again, all things count as changed.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class News:
         self._followers: list[Follower] = []
 
     def tell(self, number: int) -> None:
-        """Notify all followers that the thing of this number has changed."""
+        """Notify all followers that the thing with this number has changed."""
         for follower in self._followers:
             follower.changed.add(number)
 
@@ -36,7 +36,7 @@ class News:
 
 
 class Follower:
-    """The changes since a follower last looked.
+    """The changes since a follower last asked for them.
 
     Parameters
     ----------

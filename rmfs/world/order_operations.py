@@ -27,7 +27,7 @@ class OrderOperations(WorldState):
         self.orders_created += 1
 
     def cut_order(self, order: Order, keep: Mapping[int, int]) -> None:
-        """Reduce the units of an order in the backlog; an order without any left is cancelled.
+        """Reduce the units of an order in the backlog; cancel the order if no units are left.
 
         Parameters
         ----------
@@ -79,7 +79,7 @@ class OrderOperations(WorldState):
                 self.unqueue_order(order)
 
     def unqueue_order(self, order: Order) -> None:
-        """Remove an order from its pool; its requests that were bound to pods are open again."""
+        """Remove an order from its pool, and reopen those of its requests that are bound to pods."""
         station = self.pick_stations[order.queued_at]
         for task in station.tasks.values():
             self._give_back(task, [pick for pick in task.picks if pick.line.order is order])
@@ -89,8 +89,8 @@ class OrderOperations(WorldState):
     def assign_order(self, order: Order, station: int) -> Order:
         """Assign an order of the backlog to a pick station and open its extract requests.
 
-        Requests of a queued order that are already bound to pods stay bound. The rest of a split
-        order joins its part at the station, if there is one.
+        Requests of a queued order that are already bound to pods stay bound. If a part of the order
+        is at the station already, the remaining lines join that part.
 
         Returns
         -------

@@ -102,7 +102,7 @@ class Order:
         return sum((part.lines for part in self.parts), self.lines)
 
     def take_over(self, lines: tuple[OrderLine, ...]) -> None:
-        """Move lines of another order to this one; none of them is bound to a pod yet."""
+        """Move lines of another order to this one; none of their units may be bound to a pod."""
         giver = lines[0].order
         giver.lines = tuple(line for line in giver.lines if line not in lines)
         self.lines += lines

@@ -55,7 +55,7 @@ class Picker:
     told_s
         Time to which `fatigue` refers, in s.
     busy_until_s
-        Time at which the unit started last is finished, in s.
+        Time at which the most recently started unit is finished, in s.
     """
 
     index: int
@@ -154,7 +154,7 @@ class Staff:
         picker.station = -1
 
     def begin_unit(self, picker: Picker, now_s: float, seconds: float) -> None:
-        """Record that a picker starts a unit, which takes this time."""
+        """Record that a picker starts a unit, which takes `seconds`."""
         self.bring(picker, now_s)
         picker.units += 1
         picker.busy_until_s = now_s + seconds
@@ -180,7 +180,7 @@ class Staff:
         return fatigue
 
     def factor(self, picker: Picker, now_s: float) -> float:
-        """Return the factor of learning, speed and fatigue on the time of a picker's next unit."""
+        """Return the factor on the time of a picker's next unit, for learning, speed and fatigue."""
         made = learned(self.given.learning, picker.units) / picker.speed
         if self.given.fatigue is not None:
             made *= 1.0 + self.given.fatigue.slowdown * self.fatigue(picker, now_s)
@@ -197,7 +197,7 @@ class Staff:
         return self.unit_times.mean_s(self._unit_s[station]) * self.factor(picker, now_s)
 
     def least_s(self, station_s: float) -> float:
-        """Return a lower bound of the time of a unit, in s; 0 if there is no positive bound.
+        """Return a lower bound on the time of a unit, in s; 0 if there is no positive bound.
 
         Parameters
         ----------

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 class PodFaces(PodParts):
     """The faces on which the units of each pod lie.
 
-    A bundle goes to the face with most room; units that do not fit there go to the next face.
+    A bundle goes to the face with the most room; units that do not fit there go to the next face.
 
     Parameters
     ----------
@@ -34,11 +34,13 @@ class PodFaces(PodParts):
         super().__init__(given.count, space_per_unit, capacity)
 
     def filled(self, pod: int, sku: int) -> list[int]:
-        """Return the faces, the one with most room first."""
+        """Return the faces, the one with the most room first."""
         return self.roomiest_first(pod)
 
     def take(self, pod: int, sku: int, shown: int) -> int:
-        """Take a unit of a SKU; return its face: the one shown, or else the one with most units.
+        """Take a unit of a SKU, and return the face from which it is taken.
+
+        This is the face shown if it has a unit of the SKU, otherwise the face with the most units.
 
         Parameters
         ----------

@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _HAIR = 1e-9
-"""Rounding of sums of space, as a share."""
+"""Tolerance for rounding errors in sums of space, as a share of the capacity."""
 
 
 class PodParts:
     """The parts in which the units of each pod lie.
 
     Each part has an equal share of the pod's capacity. Units that fit into no single part, although
-    the pod has room for them in total, go to the part with most room.
+    the pod has room for them in total, go to the part with the most room.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class PodParts:
         return sum(self._units.get((pod, sku), ()))
 
     def roomiest_first(self, pod: int) -> list[int]:
-        """Return the parts of a pod, the one with most room first, ties by number."""
+        """Return the parts of a pod, the one with the most room first; ties go to lower numbers."""
         return [int(part) for part in np.argsort(self.used[pod], kind="stable")]
 
     def _take_from(self, pod: int, sku: int, part: int) -> None:

@@ -53,7 +53,7 @@ class Parcel:
     totes
         Totes that have left the pick stations so far.
     picked
-        Whether these are all of its totes.
+        Whether all totes of the order have left the pick stations.
     standing
         Number of totes that have reached the wall.
     kept
@@ -90,7 +90,7 @@ class HeldTote:
     since_s
         Time in s at which it was ready to leave.
     timer
-        Number of the scheduled event of carrying it away by hand; -1 if there is none.
+        Number of the scheduled event at which it is carried away by hand; -1 if there is none.
     """
 
     order: Order
@@ -111,7 +111,8 @@ class PutWall:
     Attributes
     ----------
     parcels
-        By index of the order, parcels of which a tote has left its station, until they are packed.
+        Parcels by index of the order, from the time when the first tote leaves its station until
+        the order is packed.
     kept
         Number of slots occupied, or reserved for totes on their way.
     travelling
@@ -171,7 +172,13 @@ class PutWall:
         return tote.parcel
 
     def arrive(self, tote: Tote, now_s: float) -> bool:
-        """Record the arrival of a tote; return whether its order is now complete and taken out."""
+        """Record the arrival of a tote.
+
+        Returns
+        -------
+        bool
+            Whether the order is now complete, so that its totes are taken out of the wall.
+        """
         parcel = tote.parcel
         tote.arrived_s = now_s
         self.travelling -= 1

@@ -23,7 +23,8 @@ class OpenRequests:
     need
         Open units per SKU, shape (K,): the station's row of a matrix, which is updated here.
     news, station
-        Notifies of this station when the first request is added or the last one removed.
+        Followers of `news` are notified of this station when the first request is added and when
+        the last one is removed.
 
     Attributes
     ----------
@@ -32,8 +33,8 @@ class OpenRequests:
     units
         Open units in total.
     version
-        Increases whenever requests are added; until then, a rule that found nothing to do need not
-        look again.
+        Increases whenever requests are added. A rule that found nothing to do need not look again
+        while the version is unchanged.
     """
 
     def __init__(self, need: NDArray[np.int32], news: News, station: int) -> None:
@@ -87,7 +88,7 @@ class OpenRequests:
         self._count_from(self.units - 1)
 
     def take(self, sku: int, at_most: int) -> list[OrderLine]:
-        """Remove open requests for a SKU, those of the first lines first, at most `at_most`.
+        """Remove at most `at_most` open requests for a SKU, starting with the first lines.
 
         Returns
         -------

@@ -19,8 +19,8 @@ class Robot:
     tier
         Tier of `waypoint`.
     waypoint
-        Waypoint at which its current drive ends, or else at which it stands: a station's waypoint,
-        a place, or its initial waypoint.
+        Waypoint at which its current drive ends or, if it is not driving, at which it stands: the
+        waypoint of a station, a storage location, or its initial waypoint.
     pod
         The pod it carries, from the start of lifting to the end of setting down; or -1.
     task
@@ -28,10 +28,10 @@ class Robot:
     station
         The station at whose head it stands, or -1.
     places
-        Storage places reserved for it, where it stands or is going to stand.
+        Storage locations reserved for it, where it stands or is going to stand.
     prepared
-        Tasks planned after its current one, each carried out if it is then possible; nothing is
-        reserved for them.
+        Tasks planned after its current one. Nothing is reserved for them: a task that is no longer
+        possible when it is due is dropped.
     """
 
     index: int

@@ -45,10 +45,11 @@ class WorldState:
     pick_stations, replenishment_stations
         The stations, in the order of the layout.
     slot_news
-        Notifies of pick stations that are switched on or off, that a robot reaches or leaves, or
-        that gain or lose an order.
+        Notifications of changed pick stations. A pick station counts as changed when it is switched
+        on or off, when a robot reaches or leaves it, and when it gains or loses an order.
     work_news
-        Notifies of stations, in the common numbering, that gain open work or may have none left.
+        Notifications of stations, in the common numbering (pick stations first), that gain open
+        work or may have none left.
     work_stations
         All pick and replenishment stations, to which rules assign work, in the common numbering.
     stations
@@ -66,9 +67,9 @@ class WorldState:
     robots
         The robots, by index.
     asking
-        Robots without a task by index, in the order in which they became free.
+        Robots without a task, keyed by index, in the order in which they became free.
     resting
-        Robots at rest or on their way to rest by index.
+        Robots at rest or on their way to rest, keyed by index.
     orders_created, orders_completed, bundles_created, bundles_stored, units_picked, units_stored
         Counts since time zero.
     units_initial

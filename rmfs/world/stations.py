@@ -72,7 +72,7 @@ class Station(Generic[T]):
         self.changed()
 
     def changed(self) -> None:
-        """React to a change of its state or contents; by default do nothing."""
+        """React to a change of the station's state or contents; by default do nothing."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
         """Check the state by recounting; a kind adds its own checks.
@@ -176,7 +176,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
     used
         Space units of the bundles assigned, or reserved by ROA, whose transfer has not started.
     bundles
-        Number of these bundles.
+        Number of the bundles counted in `used`.
     waiting
         For each pod, the assigned bundles not yet part of a task; oldest pod first.
     version

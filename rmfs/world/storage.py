@@ -1,8 +1,9 @@
-"""Storage places: which pod stands where, and which robot has reserved which place.
+"""Storage locations (*places* for short): which pod and which robot has which place.
 
-A robot *keeps* a place if it stands there or is on its way there, until traffic reports that it has
-departed; meanwhile no other robot may be sent there (condition W2 of the planner). An empty robot
-may keep a place beneath a stored pod; only a loaded one needs a place without a pod.
+A robot *keeps* a place while it is on its way there and while it stands there, until traffic
+reports that it has departed; meanwhile no other robot may be sent there (condition W2 of the
+planner). An empty robot may keep a place beneath a stored pod; only a loaded robot needs a place
+without a pod.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ class Storage:
     Attributes
     ----------
     places
-        Waypoints of the L storage places, ascending, shape (L,).
+        Waypoints of the L storage locations, ascending, shape (L,).
     place_index
         Index into `places` of each waypoint, -1 if it is not a place.
     pod_at
@@ -47,15 +48,15 @@ class Storage:
     pod_waypoint
         Waypoint at which each pod is stored, or was stored last, shape (P,).
     is_empty
-        Places without a pod that no robot keeps: a pod may be stored there, shape (L,).
+        Whether each place has no pod and no robot keeps it, shape (L,): a pod may be stored there.
     is_restful
-        Places beneath a stored, unclaimed pod that no robot keeps: a robot may rest there, shape
-        (L,).
+        Whether each place has an unclaimed pod and no robot keeps it, shape (L,): a robot may rest
+        there, beneath the pod.
     is_stored
-        Pods at a place, not on a robot, shape (P,).
+        Whether each pod is at a place and not on a robot, shape (P,).
     is_at_hand
-        Available pods: stored, unclaimed, and at a place that no robot keeps except one without
-        work, shape (P,).
+        Whether each pod is available, shape (P,): it is stored and unclaimed, and no robot keeps
+        its place except one without work.
     version
         Increases whenever a pod becomes available.
     """
@@ -113,7 +114,7 @@ class Storage:
             self._refresh(self.place_of[pod])
 
     def keep(self, robot: Robot, place: int) -> None:
-        """Reserve a storage place for a robot that is to stand there; ignore other waypoints.
+        """Reserve a storage location for a robot that is to stand there; ignore other waypoints.
 
         Raises
         ------
@@ -135,8 +136,8 @@ class Storage:
         Parameters
         ----------
         rest
-            Waypoint at which the robot's current plan ends. The robot also keeps the place to which
-            it has been sent, even without a plan yet, and the place of its task.
+            Waypoint at which the robot's current route ends. The robot also keeps the place to
+            which it has been sent, even if its route is not planned yet, and the place of its task.
         """
         goal = robot.task.place if robot.task is not None else -1
         left = [place for place in robot.places if place not in (robot.waypoint, rest, goal)]

@@ -1,7 +1,8 @@
 """Tasks of robots: one class for each kind of task.
 
-Every task is a trip, with or without a pod, to a station or a place. A kind defines when a task is
-possible, what the world reserves at its start, and what it releases at its end.
+Every task is a trip, with or without a pod, to a station or to a storage location (*place*). A kind
+defines when a task is possible, what the world reserves at its start, and what it releases at its
+end.
 """
 
 from __future__ import annotations
@@ -121,13 +122,13 @@ class Task:
 
     @property
     def lacks_place(self) -> bool:
-        """Whether the storage place of the pod is still to be chosen."""
+        """Whether the storage location of the pod is still to be chosen."""
         return self.place < 0 and self.station < 0
 
 
 @dataclass(slots=True, eq=False)
 class StationTask(Task):
-    """Bring an available pod, or the one already carried, to a station."""
+    """The task of bringing an available pod, or the one already carried, to a station."""
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
         """Whether the pod is available or already carried, and there is work for it."""
@@ -140,7 +141,7 @@ class StationTask(Task):
 
 @dataclass(slots=True, eq=False)
 class PickTask(StationTask):
-    """Bring a pod to a pick station.
+    """The task of bringing a pod to a pick station.
 
     Attributes
     ----------
@@ -162,13 +163,13 @@ class PickTask(StationTask):
 
     @property
     def can_pick(self) -> bool:
-        """Whether a pick is for an order at the station, and not in its pool."""
+        """Whether the order of a pick has a slot at the station and is not just in its pool."""
         return any(pick.line.order.station >= 0 for pick in self.picks)
 
 
 @dataclass(slots=True, eq=False)
 class ReplenishTask(StationTask):
-    """Bring a pod to a replenishment station.
+    """The task of bringing a pod to a replenishment station.
 
     Attributes
     ----------
@@ -186,7 +187,7 @@ class ReplenishTask(StationTask):
 
 @dataclass(slots=True, eq=False)
 class VisitTask(StationTask):
-    """Bring a pod to a station of another kind; each kind of station derives its own class.
+    """The task of bringing a pod to a station of another kind, which derives its own class.
 
     The controller of the stations decides whether a visit is needed; it is possible if the pod is
     available or already carried.
@@ -205,7 +206,7 @@ class VisitTask(StationTask):
 
 @dataclass(slots=True, eq=False)
 class ParkTask(Task):
-    """Store the pod that a robot carries."""
+    """The task of storing the pod that a robot carries."""
 
     kind = "park"
 
@@ -221,7 +222,7 @@ class ParkTask(Task):
 
 @dataclass(slots=True, eq=False)
 class RepositionTask(Task):
-    """Fetch a stored pod and store it at another place."""
+    """The task of fetching a stored pod and storing it at another place."""
 
     kind = "reposition"
 
@@ -237,7 +238,7 @@ class RepositionTask(Task):
 
 @dataclass(slots=True, eq=False)
 class RestTask(Task):
-    """Wait at a waypoint, usually a storage place."""
+    """The task of waiting at a waypoint, usually a storage location."""
 
     kind = "rest"
     rests = True

@@ -25,7 +25,7 @@ class World(OrderOperations):
     # --- stock and work that appear ---------------------------------------------------------
 
     def stock(self, pods: list[int], skus: list[int], units: list[int]) -> None:
-        """Put the initial stock on the pods: entry by entry a pod, a SKU and a number of units."""
+        """Put the initial stock on the pods; each entry gives a pod, a SKU and a number of units."""
         for pod, sku, count in zip(pods, skus, units, strict=True):
             self.inventory.stock(pod, sku, count)
         self.units_initial += sum(units)
@@ -58,7 +58,13 @@ class World(OrderOperations):
         return assigned
 
     def choose_station(self, bundle: Bundle, station: int) -> bool:
-        """Reserve station space for a bundle (choice of ROA); return whether it is now assigned."""
+        """Reserve station space for a bundle (the choice of ROA).
+
+        Returns
+        -------
+        bool
+            Whether the bundle is now assigned, that is, RPS has released the choice of its pod.
+        """
         target = self._replenishment_station(station)
         if bundle.station >= 0:
             raise ValueError(f"bundle {bundle.index} has station {bundle.station} already")
@@ -133,7 +139,7 @@ class World(OrderOperations):
         return bound
 
     def give_back(self, task: PickTask) -> int:
-        """Reopen the bound requests of a task that are of queued orders; return their number."""
+        """Reopen the requests of queued orders that a task has bound; return their number."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)

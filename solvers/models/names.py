@@ -1,4 +1,4 @@
-"""Names of the columns of a programme, for users who solve it with another tool."""
+"""Names of the columns of a program, for users who solve it with another tool."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 
 class Names:
-    """The name of each column of a programme, and the decision it stands for.
+    """The name of each column of a program, and the decision it stands for.
 
     Parameters
     ----------

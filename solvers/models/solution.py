@@ -127,7 +127,7 @@ class Solution(Generic[V_co]):
     sense
         Whether the objective is minimised or maximised. Default: minimised.
     built
-        Nonzeros of the programmes passed to a solver, plus other building work, converted to the
+        Nonzeros of the programs passed to a solver, plus other building work, converted to the
         number of nonzeros that takes the same time. Deterministic, like `work`.
 
     Raises

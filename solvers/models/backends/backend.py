@@ -1,4 +1,4 @@
-"""Common interface between models and solvers of integer programmes."""
+"""Common interface between models and solvers of integer programs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ V = TypeVar("V")
 
 
 class Backend(Protocol):
-    """A solver of integer programmes: the signature of `highs.solve` and `cp_sat.solve`."""
+    """A solver of integer programs: the signature of `highs.solve` and `cp_sat.solve`."""
 
     def __call__(
         self,
@@ -31,17 +31,17 @@ class Backend(Protocol):
         seed: int,
         start: NDArray[np.float64] | None,
     ) -> Outcome:
-        """Solve a programme."""
+        """Solve a program."""
 
 
 @dataclass(frozen=True)
 class Formulation(Generic[V]):
-    """A problem as an integer programme.
+    """A problem as an integer program.
 
     Attributes
     ----------
     program
-        The programme.
+        The program.
     encode
         Turns the model's values into column values.
     decode
@@ -68,14 +68,14 @@ def solve_by(
     seed: int,
     start: V | None,
 ) -> Solution[V]:
-    """Formulate the programme, check the start, run the solver, and decode the result.
+    """Formulate the program, check the start, run the solver, and decode the result.
 
     Parameters
     ----------
     backend
         The solver.
     formulate
-        Function that formulates the programme; its time counts as building time.
+        Function that formulates the program; its time counts as building time.
     limits, seed
         As for the back end.
     start
@@ -122,12 +122,12 @@ def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
 
 
 def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) -> Outcome:
-    """Solve the linear relaxation with HiGHS; its bound is valid for the integer programme.
+    """Solve the linear relaxation with HiGHS; its bound is valid for the integer program.
 
     Parameters
     ----------
     program
-        The programme.
+        The program.
     limits
         `iterations` limits the simplex method. Default: no limit.
     seed

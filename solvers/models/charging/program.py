@@ -1,4 +1,4 @@
-r"""The integer programme, with a binary column for every possible stay of a robot.
+r"""The integer program, with a binary column for every possible stay of a robot.
 
 .. math::
 
@@ -28,7 +28,7 @@ from rmfs.solvers.models.program import ProgramBuilder
 
 
 def formulate(data: Charging) -> Formulation[ChargePlan]:
-    """Formulate the problem as an integer programme.
+    """Formulate the problem as an integer program.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ from rmfs.solvers.models.pile_on.data import Flags, Floats, Integers, PileOn
 from rmfs.solvers.models.pile_on.values import Assignment
 
 TABLE_ENTRY = 1 / 32
-"""Time to process a table entry (pod and line), relative to a nonzero of a programme; it converts
+"""Time to process a table entry (pod and line), relative to a nonzero of a program; it converts
 table entries to `Solution.built`."""
 
 

@@ -1,4 +1,4 @@
-"""Shared part of the exact methods: solving the programme from the plan of the start rule."""
+"""Shared part of the exact methods: solving the program from the plan of the start rule."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Backend(Protocol):
 
     @property
     def solve(self) -> Any:
-        """Solve a programme."""
+        """Solve a program."""
 
 
 def by_programme(
@@ -35,7 +35,7 @@ def by_programme(
     start: Plan | None,
     pods: Sequence[Sequence[int]],
 ) -> Solution[Plan]:
-    """Solve the programme; the plan is never worse than that of the start rule."""
+    """Solve the program; the plan is never worse than that of the start rule."""
     began = time.perf_counter()
     first = greedy.solve(data, start=start, pods=pods).required
     programme = Programme(data)

@@ -1,4 +1,4 @@
-r"""The plan as an integer programme.
+r"""The plan as an integer program.
 
 .. math::
 
@@ -47,7 +47,7 @@ class Programme:
     Attributes
     ----------
     linear
-        The programme to be solved.
+        The program to be solved.
     """
 
     def __init__(self, data: Planning) -> None:

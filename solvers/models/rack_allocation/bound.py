@@ -17,7 +17,7 @@ _TOLERANCE = 1e-4
 def solve_in_whole_pods(
     backend: Backend, data: RackAllocation, limits: Limits, seed: int, start: Allocation | None
 ) -> Solution[Allocation]:
-    """Solve the integer programme and round its bound up to a whole number of pods.
+    """Solve the integer program and round its bound up to a whole number of pods.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""The integer programme.
+r"""The integer program.
 
 Two additions make the relaxation tighter without cutting off any allocation. No station needs more
 of SKU k than the sum :math:`d_{sk}` of the :math:`C_s` largest order lines of that SKU, so
@@ -27,7 +27,7 @@ from rmfs.solvers.models.rack_allocation.data import (
 
 
 def formulate(data: RackAllocation) -> Formulation[Allocation]:
-    """Formulate the problem as an integer programme.
+    """Formulate the problem as an integer program.
 
     Parameters
     ----------
@@ -72,11 +72,11 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
 
 
 def together(data: RackAllocation) -> LinearProgram:
-    """Formulate the programme aggregated over the stations, a relaxation with few columns.
+    """Formulate the program aggregated over the stations, a relaxation with few columns.
 
     Each SKU has one d (see the module), the largest of all stations, so that each row is implied by
     the sum of the rows it replaces. If all stations have equally many slots, the linear relaxations
-    of this programme and that of `formulate` have the same value.
+    of this program and that of `formulate` have the same value.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def _program(
     slots: NDArray[np.int64],
     most: NDArray[np.int64],
 ) -> LinearProgram:
-    """State the programme; `most` caps the stock that counts, shape (K, S)."""
+    """State the program; `most` caps the stock that counts, shape (K, S)."""
     (orders, skus), pods, stations = units.shape, len(stock), len(slots)
     builder = ProgramBuilder()
     x = builder.columns((orders, stations))

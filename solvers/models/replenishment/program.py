@@ -1,4 +1,4 @@
-r"""The integer programme.
+r"""The integer program.
 
 Bundles go to pods (x), pods to stations (y); the load w of a pod counts at its station:
 
@@ -34,7 +34,7 @@ from rmfs.solvers.models.replenishment.data import (
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of the programme in order: x, y, w, l.
+    """The columns of the program in order: x, y, w, l.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ def _meet(
 
 
 def columns_of(data: Replenishment, columns: Columns, stocking: Stocking) -> NDArray[np.float64]:
-    """Turn a stocking into column values of the programme.
+    """Turn a stocking into column values of the program.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def columns_of(data: Replenishment, columns: Columns, stocking: Stocking) -> NDA
 
 
 def stocking_of(data: Replenishment, columns: Columns, x: NDArray[np.float64]) -> Stocking:
-    """Turn column values of the programme into a stocking.
+    """Turn column values of the program into a stocking.
 
     Pods that would be brought without a bundle stay where they are.
 
@@ -164,7 +164,7 @@ def stocking_of(data: Replenishment, columns: Columns, x: NDArray[np.float64]) -
 
 
 def formulate(data: Replenishment, *, whole: bool) -> Formulation[Stocking]:
-    """Formulate the problem as a mixed-integer programme.
+    """Formulate the problem as a mixed-integer program.
 
     Parameters
     ----------

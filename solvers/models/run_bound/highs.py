@@ -33,7 +33,7 @@ def solve(
     limits
         `iterations` limits the simplex method; the bound is valid whenever it stops.
     seed, start
-        Not used, as this is a linear programme.
+        Not used, as this is a linear program.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-r"""The linear programme behind the proven bound; each of its inequalities holds for every run.
+r"""The linear program behind the proven bound; each of its inequalities holds for every run.
 
 A *pick* occupies station s for :math:`\tau_s` and the robot for :math:`\pi_s` seconds from its
 start. A *visit* is a stay of a pod at the head of a station; it counts if a pick starts in the
@@ -55,7 +55,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Columns:
-    """Column indices of the programme: per pick station, replenishment station and pod."""
+    """Column indices of the program: per pick station, replenishment station and pod."""
 
     units: NDArray[np.int64]
     visits: NDArray[np.int64]
@@ -100,7 +100,7 @@ def program(data: RunBound) -> tuple[LinearProgram, Columns]:
 
     Returns
     -------
-    The programme, which minimises minus the number of units, and its columns.
+    The program, which minimises minus the number of units, and its columns.
     """
     builder = ProgramBuilder()
     columns = _columns(builder, data)

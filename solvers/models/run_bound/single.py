@@ -1,4 +1,4 @@
-"""Bounds from single resources, weaker than the linear programme but easy to interpret."""
+"""Bounds from single resources, weaker than the linear program but easy to interpret."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def single_bounds(data: RunBound) -> dict[str, float]:
 
     Returns
     -------
-    Units per hour by name; each is at least the bound of the linear programme, up to rounding.
+    Units per hour by name; each is at least the bound of the linear program, up to rounding.
     """
     picking = data.picking
     cadence = picking.cadence_s

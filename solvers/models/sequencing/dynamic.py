@@ -1,4 +1,4 @@
-"""Exact dynamic programme for small inputs: A* over the missing SKUs of each order.
+"""Exact dynamic program for small inputs: A* over the missing SKUs of each order.
 
 A state is the set of missing SKUs of every order (none: complete; some: open; all: not started,
 unless open before). A transition is one visit: the pod serves the open orders, completes further

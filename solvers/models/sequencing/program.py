@@ -1,4 +1,4 @@
-r"""The integer programme, over the visits of a plan of known length.
+r"""The integer program, over the visits of a plan of known length.
 
 A heuristic plan of T visits bounds the horizon. Binary columns: v_tp pod p makes visit t, s_ot
 order o has started by visit t, f_ot it has finished by visit t, d_okt it takes SKU k at visit t,

@@ -1,4 +1,4 @@
-r"""The integer programme, with the pods of each zone carried over from period to period.
+r"""The integer program, with the pods of each zone carried over from period to period.
 
 .. math::
 
@@ -34,7 +34,7 @@ def program(data: Stays, *, whole: bool) -> LinearProgram:
 
     Returns
     -------
-    The programme; its first S * Z columns are x, row by row.
+    The program; its first S * Z columns are x, row by row.
     """
     stays, zones = data.cost_s.shape
     first, last, periods = data.periods
@@ -58,7 +58,7 @@ def program(data: Stays, *, whole: bool) -> LinearProgram:
 
 
 def columns_of(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Turn a choice of zones into column values of the programme.
+    """Turn a choice of zones into column values of the program.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def columns_of(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.float64]:
 
 
 def zones_of(data: Stays, x: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Turn column values of the programme into a choice of zones.
+    """Turn column values of the program into a choice of zones.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def zones_of(data: Stays, x: NDArray[np.float64]) -> NDArray[np.int64]:
 
 
 def formulate(data: Stays, *, whole: bool) -> Formulation[NDArray[np.int64]]:
-    """Formulate the problem as an integer programme.
+    """Formulate the problem as an integer program.
 
     Parameters
     ----------

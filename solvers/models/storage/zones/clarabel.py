@@ -1,6 +1,6 @@
 """The optimal steady state, solved by the interior-point method Clarabel through cvxpy.
 
-cvxpy compiles a problem of a given size into a cone programme once. Every number of `Zones` is a
+cvxpy compiles a problem of a given size into a cone program once. Every number of `Zones` is a
 parameter of it (disciplined parametrised programming), so solving again with other numbers skips
 the compilation. Each solve starts cold, so its result depends on its input alone.
 """
@@ -88,7 +88,7 @@ def solve(
 
 
 class _Programme:
-    """The programme of one size.
+    """The program of one size.
 
     The traffic is a variable of its own, so that no product of two parameters occurs.
 

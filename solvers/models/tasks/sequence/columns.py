@@ -1,6 +1,6 @@
 r"""Routes by column generation: a bound over whole routes, and a choice among those generated.
 
-The linear programme over all routes of all robots (`master`) is solved by adding routes that are
+The linear program over all routes of all robots (`master`) is solved by adding routes that are
 cheap under its prices (`pricing`). Whatever the prices :math:`v, w \ge 0`, no plan costs less than
 
 .. math::

@@ -18,7 +18,7 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, TICKS_PER_S, Routes, T
 from rmfs.solvers.models.tasks.sequence.schedule import objective, violations
 
 ARC_ENTRIES = 14.0
-"""Number of nonzeros of a programme that take as long to build as one arc; it converts arcs to
+"""Number of nonzeros of a program that take as long to build as one arc; it converts arcs to
 `Solution.built`."""
 
 _STATUS = {

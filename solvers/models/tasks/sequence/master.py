@@ -1,4 +1,4 @@
-r"""The restricted master programme: which of the known routes are driven.
+r"""The restricted master program: which of the known routes are driven.
 
 .. math::
 
@@ -68,7 +68,7 @@ class Chosen(NamedTuple):
 
 
 class Master:
-    """The programme; routes are added to it.
+    """The program; routes are added to it.
 
     Parameters
     ----------
