@@ -79,7 +79,7 @@ class OrderOperations(WorldState):
                 self.unqueue_order(order)
 
     def unqueue_order(self, order: Order) -> None:
-        """Remove an order from its pool, and reopen those of its requests that are bound to pods."""
+        """Remove an order from its pool and reopen those of its requests that are bound to pods."""
         station = self.pick_stations[order.queued_at]
         for task in station.tasks.values():
             self._give_back(task, [pick for pick in task.picks if pick.line.order is order])

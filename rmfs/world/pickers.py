@@ -180,7 +180,7 @@ class Staff:
         return fatigue
 
     def factor(self, picker: Picker, now_s: float) -> float:
-        """Return the factor on the time of a picker's next unit, for learning, speed and fatigue."""
+        """Return the factor of learning, speed and fatigue in the time of the next unit."""
         made = learned(self.given.learning, picker.units) / picker.speed
         if self.given.fatigue is not None:
             made *= 1.0 + self.given.fatigue.slowdown * self.fatigue(picker, now_s)

@@ -25,7 +25,7 @@ class World(OrderOperations):
     # --- stock and work that appear ---------------------------------------------------------
 
     def stock(self, pods: list[int], skus: list[int], units: list[int]) -> None:
-        """Put the initial stock on the pods; each entry gives a pod, a SKU and a number of units."""
+        """Put the initial stock on the pods: entry i puts `units[i]` of `skus[i]` on `pods[i]`."""
         for pod, sku, count in zip(pods, skus, units, strict=True):
             self.inventory.stock(pod, sku, count)
         self.units_initial += sum(units)
