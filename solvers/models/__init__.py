@@ -1,4 +1,4 @@
-"""Pure optimisation models: a frozen dataclass of arrays in, a `Solution` out.
+"""Pure optimisation models: each takes a frozen dataclass of arrays and returns a `Solution`.
 
 The models do not depend on the simulation, so each can be solved, tested and timed without one.
 `rmfs.solvers.control` fills the arrays from a world and applies the solution.

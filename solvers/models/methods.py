@@ -23,7 +23,7 @@ class Method(Protocol[D_contra, V]):
 
 
 class Methods(Generic[D, V]):
-    """The methods of a family by name; called, it is the family's `solve`.
+    """The methods of a family by name. Calling this object solves a problem by one of them.
 
     Parameters
     ----------

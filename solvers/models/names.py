@@ -37,8 +37,8 @@ class Names:
         columns
             The columns of the block.
         means
-            The decision that a column makes if it is 1, with the letters of the indices in braces:
-            `pod_station[{p}] = {s}`.
+            The decision that a column makes if it is 1, with the letters of the indices in braces,
+            such as `pod_station[{p}] = {s}`.
         indices
             Index values by letter; they broadcast to the shape of the columns.
         """

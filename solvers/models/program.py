@@ -148,7 +148,7 @@ class ProgramBuilder:
         shape
             Shape of the block.
         cost, lower, upper
-            Values of that shape, or that broadcast to it. Defaults: 0, 0 and 1.
+            Values of that shape, or values that broadcast to it. Defaults: 0, 0 and 1.
         integer
             Whether the columns must be integers. Default: yes, so that columns are binary by
             default.

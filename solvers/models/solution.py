@@ -26,7 +26,10 @@ BOUND_TOLERANCE = 1e-6
 
 
 class WallGuardError(RuntimeError):
-    """A solver reached its wall-clock guard; no result is returned, as it is not reproducible."""
+    """A solver reached its wall-clock guard.
+
+    No result is returned, because it would not be reproducible.
+    """
 
 
 class Status(Enum):
@@ -215,7 +218,7 @@ def solution_of_rule(
     Parameters
     ----------
     values
-        The heuristic's solution; None if there is none, or it is infeasible.
+        The heuristic's solution; None if it found none, or only an infeasible one.
     objective
         Value of the model's objective function.
     bound

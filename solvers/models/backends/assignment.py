@@ -6,7 +6,8 @@ r"""The linear assignment problem on a cost table with at least as many columns 
 
 Dual: :math:`\max \sum_i u_i + \sum_j v_j` over :math:`u_i + v_j \le c_{ij}`, :math:`v \le 0`
 (Burkard, Dell'Amico, Martello: Assignment Problems, chapter 4). Every :math:`v \le 0` gives a bound
-with :math:`u_i = \min_j c_{ij} - v_j`; an optimal matching gives the best one.
+with :math:`u_i = \min_j (c_{ij} - v_j)`. The v derived from an optimal matching gives the best
+bound.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from rmfs.solvers.models.backends.flow import Network, min_cost_flow
 from rmfs.solvers.models.solution import Solution, solution_of_optimum
 
 Solver = Literal["scipy", "min_cost_flow"]
-"""Shortest augmenting paths on real costs (SciPy), or cost scaling on whole ones (OR-Tools)."""
+"""Shortest augmenting paths on real costs (SciPy), or cost scaling on integers (OR-Tools)."""
 
 _TINY = 2.0**-50
 """Upper bound on the relative rounding error of a sum of two numbers, with a safety margin."""
@@ -61,7 +62,7 @@ def assign(cost: NDArray[np.float64], solver: Solver = "scipy") -> Assigned | No
 
     Returns
     -------
-    The best assignment, or None if there is none.
+    The best assignment, or None if every assignment contains a forbidden pair.
     """
     rows, columns = cost.shape
     if rows > columns:
@@ -115,7 +116,7 @@ def solve_by_assignment(
 
 
 def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
-    """Take the cheapest remaining pair until each row has a column; ties: lowest indices.
+    """Repeatedly take the cheapest remaining pair; ties go to the lowest indices.
 
     Parameters
     ----------
@@ -124,7 +125,8 @@ def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
 
     Returns
     -------
-    Column of each row, or None if greed ends in a dead end (or there is no assignment).
+    Column of each row; None if a row remains for which every free column is forbidden, which can
+    happen even if an assignment exists.
     """
     rows, columns = cost.shape
     column = np.full(rows, -1, np.int64)
@@ -144,10 +146,11 @@ def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
 
 
 def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> float:
-    """Return a lower bound on the cost of every assignment, given a (presumably optimal) one.
+    """Return a lower bound on the cost of every assignment, derived from a given assignment.
 
-    The prices `v` of the columns are the lengths of the shortest alternating paths (Bellman and
-    Ford on the rows); columns without a row have price 0. The bound is valid for any prices.
+    The prices `v` of the columns are the lengths of the shortest alternating paths, which are 0 or
+    negative (Bellman-Ford over the rows); columns without a row have price 0. The bound is valid
+    for any given assignment, and tight if it is optimal.
 
     Parameters
     ----------

@@ -49,7 +49,7 @@ class Formulation(Generic[V]):
     objective, violations
         Functions of the model.
     names
-        Function that gives the name and meaning of each column, see `Names`.
+        Function that gives the name and meaning of each column; see `Names`.
     """
 
     program: LinearProgram

@@ -111,8 +111,8 @@ def configure(solver: cp_model.CpSolver, limits: Limits, seed: int) -> None:
 def run(solver: cp_model.CpSolver, model: cp_model.CpModel) -> CpSolverStatus:
     """Solve a model in such a way that Ctrl-C ends the search.
 
-    Signals reach Python in the main thread only, and not while it is in the solver. The search
-    therefore has a thread of its own.
+    Python handles signals in the main thread only, and not while that thread is in the solver. The
+    search therefore runs in a thread of its own.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def run(solver: cp_model.CpSolver, model: cp_model.CpModel) -> CpSolverStatus:
     Raises
     ------
     KeyboardInterrupt
-        If the user interrupts the search, which is stopped.
+        If the user interrupts the search; the search is stopped first.
     """
     if threading.current_thread() is not threading.main_thread():
         return solver.solve(model)

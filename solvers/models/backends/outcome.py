@@ -66,7 +66,8 @@ class Outcome:
         objective
             The model's own objective function.
         build_s
-            Seconds the model spent before the adapter was called; they are added to both times.
+            Seconds the model spent before the adapter was called; they are added to `build_s` and
+        `wall_s`.
 
         Returns
         -------
@@ -115,7 +116,7 @@ class Relaxation:
 
 
 def trivial(program: LinearProgram, backend: str) -> Outcome | None:
-    """Solve a program without columns here, as solvers treat it in different ways.
+    """Solve a program without columns here, because solvers treat such a program differently.
 
     Parameters
     ----------

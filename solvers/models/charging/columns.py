@@ -30,7 +30,8 @@ class Columns:
     cost_s
         Cost of each stay without missed work, shape (N,).
     away, used
-        Slots in which the robot is away from work, and in which it occupies a place, shape (N, T).
+        Whether the robot of each stay is away from work in each slot, and whether it occupies a
+        place, shape (N, T).
     first
         First row of each robot, followed by N, shape (R + 1,).
     """

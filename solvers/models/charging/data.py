@@ -9,6 +9,10 @@ the place, the first slot b and the number n of slots. During its stay the robot
     + idle \cdot slot \cdot slots_r\bigr)
     + (1 - idle) \frac{slot}{Q} \sum_{q,t} \bigl(wanted_{qt} - (R - away_t)\bigr)^+
 
+:math:`end_r` and :math:`low_r` are the final and the lowest level of robot r, :math:`way_{rg}` is
+its drive back from a place of group g, :math:`slots_r` is its number of slots away from work,
+:math:`away_t` is the number of robots away in slot t, and R is the number of robots.
+
 Missing robot time is weighed against energy: :math:`lost(l) = worth\,(1 - l - \kappa (l - l^2))` is
 the robot time needed to fill a battery whose final level is l; :math:`\kappa` makes energy worth
 more in an empty battery than in a full one. Batteries fill with constant power up to a bend, and
@@ -53,8 +57,8 @@ class Charging:
         slot 0; if it has no stay, it leaves now.
     way_s
         Time from each robot to a place of each group, shape (R, G), in s; +inf where it may not go.
-        A stay begins with this drive, unless the robot is already there; the way back is charged in
-        addition.
+        A stay begins with this drive, unless the robot is already there. The cost of a stay also
+        includes the drive back, which takes the same time.
     places
         Number of robots that each group can hold in each slot, shape (G, T).
     gain
@@ -68,7 +72,7 @@ class Charging:
     slot_s
         Length of a slot, positive, in s.
     worth_s
-        Worth of a full battery at the end, in s of robot time.
+        Worth of a full battery at the end of the last slot, in s of robot time.
     longest
         Maximum number of slots of a stay. Default 8.
     taper_from
@@ -187,9 +191,10 @@ class Charging:
         return lost
 
     def missing_s(self, away: Integers) -> Floats:
-        """Return the missing robot time in each slot, averaged over the cases, shape (T,), in s.
+        """Return the additional cost of missing robots in each slot, shape (T,), in s.
 
-        The cost of time away from work when no robot is missing is not included.
+        This is the mean over the cases of the number of missing robots, times `missed_s`. The cost
+        of all time away from work (`idle`) is not included.
 
         Parameters
         ----------
@@ -202,7 +207,7 @@ class Charging:
 
     @property
     def missed_s(self) -> float:
-        """Additional cost of one slot in which a needed robot is missing, in s."""
+        """Cost of one slot in which a needed robot is missing, in addition to `idle`, in s."""
         return self.slot_s * (1 - self.idle)
 
 
@@ -258,7 +263,7 @@ def costs_s(data: Charging, robot: Integers, plan: ChargePlan) -> Floats:
 
 
 def away(data: Charging, robot: Integers, plan: ChargePlan) -> NDArray[np.bool_]:
-    """Return for each stay the slots in which its robot is away from work, shape (N, T).
+    """Return for each stay and slot whether the robot is away from work, shape (N, T).
 
     Parameters
     ----------
@@ -273,7 +278,7 @@ def away(data: Charging, robot: Integers, plan: ChargePlan) -> NDArray[np.bool_]
 
 
 def during(first: Integers, end: Integers, slots: int) -> NDArray[np.bool_]:
-    """Return for each interval [first, end) which slots it contains, shape (N, T)."""
+    """Return for each interval [first, end) whether it contains each slot, shape (N, T)."""
     slot = np.arange(slots)
     within: NDArray[np.bool_] = (slot >= first[:, np.newaxis]) & (slot < end[:, np.newaxis])
     return within

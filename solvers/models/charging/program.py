@@ -6,6 +6,9 @@ r"""The integer program, with a binary column for every possible stay of a robot
     \sum_{c \in C_r} x_c = 1, \quad
     m_{qt} \ge wanted_{qt} - R + \sum_{c \text{ away in } t} x_c, \quad
     \sum_{c \text{ at } g \text{ in } t} x_c \le places_{gt}
+
+where :math:`C_r` are the stays of robot r, "no stay" included, and :math:`m_{qt}` is the number of
+robots missing in slot t of case q. The other symbols are those of `data`.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Pile-on: orders to station slots (POA) and pods to stations (PPS), with robots also TA.
+"""Pile-on: assign orders to slots (POA), pods to stations (PPS) and, if given, robots to pods (TA).
 
 - `joint`: for sites of realistic size, under a deterministic limit; used by controllers;
 - `cp_sat`, `highs`: exact, with M1G (Jiao et al. 2025) as the default weights;
-- `greedy`, `hadgs`: heuristics, whose decisions also start the exact methods;
+- `greedy`, `hadgs`: heuristics; their decisions can also start the exact methods;
 - `neighbourhood`: re-optimises two stations at a time exactly.
 
 `relaxation` and `prices` compute lower bounds, `candidates` prunes pairs.

@@ -75,8 +75,8 @@ class Pruning:
         Pods per wanted SKU and station. Default 4.
     orders_per_slot
         Orders (or lines, in variants where each line is placed by itself) per free slot of a
-        station. Default 64: it worsened the solution of one in twenty of 150 recorded questions; 16
-        worsened every second one, by 21 s of robot time on average.
+        station. Default 64, which worsened the solution of one in twenty of 150 recorded inputs; 16
+        worsened half of the solutions, by 21 s of robot time on average.
     stations_per_order
         Stations per order, if more stations have free slots; no order is left without a station.
         Default 4.

@@ -30,11 +30,11 @@ class Columns:
     pod, station, call
         Pod, station and column x of each call.
     order, at, slot, prospect
-        Order, station and columns y and g of each place; `prospect` is empty if prospects are not
-        rewarded.
+        Order, station and columns y and g of each *place*, that is, each pair of order and station;
+        `prospect` is empty if prospects are not rewarded.
     line, place, cover
-        Line, index of the place of its order, and column z of each line that a place could cover; z
-        is y in `Variant.WHOLE`.
+        Line, index of the place of its order, and column z of each line that could be covered at
+        this place; z is y in `Variant.WHOLE`.
     complete, started
         Columns e and w of each order, empty in variants that do not need them.
     short_station, short_sku, short

@@ -2,8 +2,8 @@ r"""The input of the pile-on models: one snapshot of orders, pods, stations and 
 
 Sets: stations s, orders o with lines l (SKU k(l), units q_l), pods p with stock a_pk, robots r.
 Earlier decisions are part of the data: orders at stations with open demand, pods on their way,
-robots that carry or fetch a pod. The stock of pods on their way first serves the orders already at
-the station:
+robots that carry or fetch a pod. The stock of the pods on their way to station s first serves the
+open demand of the orders already there, :math:`open_{sk}` units of SKU k:
 
 .. math::
 
@@ -56,7 +56,8 @@ class PileOn:
         Pod a robot is bound to, or -1 if the robot is free, shape (R,). A bound robot fetches no
         other pod; its pod, if available, needs no other robot.
     worth
-        Extra reward for giving an order its (first) slot, shape (O,): age, due time. Default: none.
+        Extra reward for giving an order its (first) slot, shape (O,), for example for its age or
+        due time. Default: none.
     may_call
         Whether pods may be called to each station, shape (S,); the others receive only pods that
         are on their way already. Default: to all.

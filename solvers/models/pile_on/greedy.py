@@ -2,8 +2,9 @@
 
 Orders are placed wherever stock already covers them. Then the pod (or the set of pods for one
 order) with the greatest gain over all stations is called, and its station is filled; this is
-repeated. When the slots are full, pods whose prospects are worth more than their call are called in
-the same way. Gains only decrease as orders and pods go to other stations, so a station is scored
+repeated. *Prospects* are orders that get no slot but could be filled from the pods that come. When
+the slots are full, pods whose prospects are worth more than their call are called in the same way.
+Gains only decrease as orders and pods go to other stations, so a station is scored
 again only when it is at the top of the queue (lazy evaluation). Deterministic: ties go to the lower
 station and pod.
 """
@@ -35,7 +36,10 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Decide by greatest gain; `iterations` limits the calls for slots, and those for prospects.
+    """Decide by greatest gain.
+
+    `iterations` limits the number of calls made to fill slots and, separately, the number of calls
+    made for prospects.
 
     Parameters
     ----------
@@ -80,7 +84,9 @@ def fill_slots(partial: PartialAssignment, most: int | None = None) -> None:
 
 
 def add_prospects(partial: PartialAssignment, most: int | None = None) -> None:
-    """Make prospects of orders that leftover stock covers, and call pods if their prospects pay.
+    """Turn orders that leftover stock covers into prospects, then call pods for their prospects.
+
+    A pod is called if its prospects are worth more than the call.
 
     Parameters
     ----------

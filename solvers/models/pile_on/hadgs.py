@@ -5,12 +5,13 @@ call the pod p, with its nearest robot r, that minimises
 
     K(p) = -complete * (orders p would complete) + travel * (d_rp + d_ps)     (eq. 23)
 
-and repeat, until the slots are full. Where no single pod completes an order, sets of pods are
-sampled (`SETS` of them, each covering a random order) and the best is improved by local searches
-(`SEARCHES` exchanges of one pod), the paper's l1 = 10 and l2 = 3. Our choices where the paper
-leaves details open: stations are ordered by their inbound travel, orders by worth, then units. The
-paper does not consider shortages of orders already placed; here each unit of shortage that a pod
-eases lowers K by `open_unit`.
+with d_rp from robot to pod and d_ps from pod to station; repeat until no call is useful. Where no
+single pod completes an order, `SETS` sets of pods are sampled, each covering a random order, and
+the best set is improved by `SEARCHES` local searches, each of which exchanges one pod; these are
+the paper's l1 = 10 and l2 = 3. Our choices where the paper leaves details open: stations are
+processed in ascending order of the travel of their inbound pods; orders are taken by worth, then
+by units. The paper has no shortages of orders already placed, and no weights `unit` and `visit`;
+here each unit of shortage that a pod eases lowers K by `open_unit`, and both weights are counted.
 """
 
 from __future__ import annotations

@@ -102,7 +102,7 @@ def solve(
 
 
 def station_groups(data: PileOn) -> list[Integers]:
-    """Return the pairs of stations to decide together: each with the next in a ring of neighbours.
+    """Return the pairs of stations to decide together: neighbours in a ring of all stations.
 
     Parameters
     ----------

@@ -40,7 +40,8 @@ class Offers:
     pod, line, units
         One entry per pod and line whose SKU it holds, sorted by pod, then line.
     match
-        Number of the match that each entry belongs to: a pod and an order for which it holds units.
+        Number of the match to which each entry belongs. A *match* is a pair of a pod and an order
+        for which the pod holds units.
     match_pod, match_order
         Pod and order of each match.
     """
@@ -118,7 +119,7 @@ class PartialAssignment:
     def fill(self, station: int) -> None:
         """Fill the slots with coverable orders, by most worth, then fewest units, then index.
 
-        Small orders first leave most stock for the others.
+        Small orders go first because they leave the most stock for the others.
         """
         while self.slots[station] > 0:
             ready = self.coverable(station)[self._rank]
@@ -127,7 +128,7 @@ class PartialAssignment:
             self.place(int(self._rank[ready.argmax()]), station)
 
     def reserve(self, station: int) -> None:
-        """Make prospects of the orders that the stock left covers, in the order of `fill`."""
+        """Turn the orders that the stock left covers into prospects, in the sequence of `fill`."""
         if not self.data.weights.prospects or not self.data.slots[station]:
             return
         while (ready := self.coverable(station)[self._rank]).any():
@@ -220,9 +221,9 @@ class PartialAssignment:
     def best_prospect_call(self, station: int) -> Call | None:
         """The best pod whose prospects at a station are worth more than its call.
 
-        As (5) of the program demands, it must serve an order placed there: either one that is
-        already placed, or one of its prospects that takes the place of an order on which no other
-        pod depends.
+        As (5) of the program demands, the pod must serve an order that has a slot there. This is
+        either an order already placed or one of the pod's prospects. The latter gets the slot of a
+        placed order, chosen so that no other called pod is left without an order.
         """
         pods = self.free_pods(station)
         if self._spare_order(station) < 0:
@@ -236,7 +237,10 @@ class PartialAssignment:
         return Call(float(gain[best]), station, (int(pods[best]),)) if gain[best] > 0 else None
 
     def settle_prospects(self, call: Call) -> None:
-        """Add prospects of a call; if its pod serves no placed order, place one in exchange."""
+        """Add the prospects of a call.
+
+        If its pod serves no placed order, one of the prospects gets the slot of a placed order.
+        """
         station, pods = call.station, np.array(call.pods)
         new = np.flatnonzero(self.prospect < 0)
         self.reserve(station)

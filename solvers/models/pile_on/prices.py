@@ -14,10 +14,11 @@ a line l covered at station s pays :math:`\pi_{ls} \ge 0`, an eased unit of shor
       - \sum_{l,s} \min(1, surplus_{sk(l)} / q_l)\, \pi_{ls}
       + \text{orders}(\pi), \qquad 0 \le \sigma_{sk} \le open\_unit
 
-is a lower bound. In orders(π), every order takes its cheapest option, with no more slots in total
-than all stations have. A robot costs as much as the nearest free one. Prices start as equal shares
-of the pods' costs and are improved by subgradient steps of Polyak's length (Polyak 1969), which aim
-at the objective of a known decision.
+is a lower bound. In orders(π), which includes the penalties for empty slots, every order takes its
+cheapest option, with no more slots in total than all stations have. If a pod needs a robot, its
+cost includes the trip of the nearest free robot. Prices start as equal shares of the pods' costs
+and are improved by subgradient steps of Polyak's length (Polyak 1969), which aim at the objective
+of a known decision.
 """
 
 from __future__ import annotations
@@ -54,7 +55,7 @@ def bound(data: PileOn, upper: float, iterations: int = ITERATIONS) -> float:
         Objective of a feasible decision, at which the steps aim. It affects only the quality of the
         bound.
     iterations
-        Subgradient steps. Default `ITERATIONS`.
+        Number of subgradient steps. Default `ITERATIONS`.
 
     Returns
     -------
@@ -83,7 +84,7 @@ def bound(data: PileOn, upper: float, iterations: int = ITERATIONS) -> float:
 def bounded(
     data: PileOn, found: Solution[Assignment], iterations: int = ITERATIONS, gap: float = 0.0
 ) -> Solution[Assignment]:
-    """Add the bound to a decision.
+    """Add the bound and the resulting status to a decision.
 
     Parameters
     ----------
@@ -92,9 +93,9 @@ def bounded(
     found
         The decision.
     iterations
-        Subgradient steps. Default `ITERATIONS`.
+        Number of subgradient steps. Default `ITERATIONS`.
     gap
-        Relative gap at which it counts as optimal. Default 0.
+        Relative gap at which the decision counts as optimal. Default 0.
     """
     cost = found.objective
     least = bound(data, cost, iterations)

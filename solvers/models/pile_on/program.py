@@ -1,13 +1,16 @@
 r"""The pile-on models as an integer linear program, for every back end.
 
-Columns (binary but for v): x_ps pod called, y_os slot taken, z_ls line covered, g_os prospect
-(order could be filled, gets no slot), e_o order complete, w_o order started, b_rp robot fetches,
-v_sk open units left. In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os and e_o = sum_s
-y_os, so that only x, y, g, b, v remain. That is M1G with h = y + g substituted (y <= h holds by
-itself), with the empty slots u_s = C_s - sum_o y_os, and without its link columns d: "2 d_ops <=
-y_os + x_ps, x_ps <= sum_o d_ops" says only that a called pod shares a SKU with an order placed
-there, which is (5). There is one difference: M1G also rewards prospects of stations without free
-slots, which only the leftovers of inbound pods can serve; here columns g exist only if C_s > 0.
+Columns (all binary except v): x_ps pod p is called to station s, y_os order o takes a slot, z_ls
+line l is covered, g_os prospect (order o could be filled but gets no slot), e_o order is complete,
+w_o order is started, b_rp robot r fetches pod p, v_sk number of open units that stay without stock.
+C_s is the number of free slots.
+
+In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os and e_o = sum_s y_os, so that only x,
+y, g, b, v remain. That is M1G with h = y + g substituted (y <= h holds by itself), with the empty
+slots u_s = C_s - sum_o y_os, and without its link columns d: "2 d_ops <= y_os + x_ps, x_ps <= sum_o
+d_ops" says only that a called pod shares a SKU with an order placed there, which is (5). There is
+one difference: M1G also rewards prospects of stations without free slots, which only the leftovers
+of inbound pods can serve; here columns g exist only if C_s > 0.
 
 .. math::
 

@@ -163,10 +163,10 @@ def part(
     """Free the decisions of a few stations.
 
     An order that also has a slot at another station stays as it is: its slots at the freed stations
-    remain taken, its lines there become open demand, and pods called there that hold their SKUs
-    stay called. The same applies to prospects of a station if such orders take all its slots.
-    `merge` may then leave such a line without stock (at the price of open demand), which
-    `violations` reports.
+    remain taken, its lines there become open demand, and a pod called there stays called if it
+    holds a SKU of such a line. Prospects of a freed station also stay as they are if such orders
+    take all its slots. `merge` may then leave such a line without stock (at the price of open
+    demand), which `violations` reports.
 
     Parameters
     ----------
@@ -181,8 +181,8 @@ def part(
 
     Returns
     -------
-    The part: its orders are those at these stations and those that wait, its pods and robots those
-    that no other station has. None if there is no order to decide on.
+    The part, which contains the orders at these stations, the waiting orders, and the pods and
+    robots that no other station uses; None if there is no order to decide on.
     """
     elsewhere = np.ones(data.stations, dtype=np.bool_)
     elsewhere[stations] = False

@@ -1,8 +1,9 @@
 r"""A decision, its cost, and its feasibility.
 
-The objective, with x: pod called to station, b: robot fetches pod, n_s: slots taken, v: open units
-left uncovered, c_o: order covered in full (or, a prospect, coverable), q_o: its units,
-z_l: line covered, and m_o: slots the order takes:
+The objective uses x: pod called to station; b: robot fetches pod; t, f: travel costs of both;
+C_s, n_s: slots free before the decision, and those taken; v: units of open demand left uncovered;
+c_o: order covered in full, or a prospect; q_o: units of the order; z_l: line covered; and m_o:
+number of slots that the order takes:
 
 .. math::
 
@@ -188,7 +189,7 @@ def violations(data: PileOn, values: Assignment) -> list[str]:
 
     Returns
     -------
-    One line per kind of violation, naming its first place; empty if the decision is feasible.
+    One line per kind of violation, naming its first occurrence; empty if the decision is feasible.
     """
     parts = values.slot.sum(axis=1)
     called = np.flatnonzero(values.pod_station >= 0)

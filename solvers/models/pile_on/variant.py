@@ -24,7 +24,7 @@ class Variant(Enum):
     """One station covers some lines of an order; the rest stays in the backlog."""
 
     SPLIT_BOTH = "split-both"
-    """Any lines at any stations; the rest stays in the backlog."""
+    """Any station may cover any lines of an order; the rest stays in the backlog."""
 
     @property
     def many_stations(self) -> bool:
@@ -47,10 +47,11 @@ class Weights:
     Parameters
     ----------
     travel
-        Per unit of travel of a called pod to its station and of a robot to the pod. Default 1.
+        Cost per unit of travel, of a called pod to its station and of a robot to the pod. Default
+        1.
     visit
-        Per called pod, in addition to its travel, such as for the hand-over at the station. Default
-        0.
+        Cost per called pod in addition to its travel, for example for the hand-over at the station.
+        Default 0.
     empty_slot
         Penalty per slot that stays empty. Default 1000.
     complete

@@ -43,7 +43,7 @@ def visits(data: Planning) -> Visits:
 
 
 def found(told: tuple[list[list[int]], list[int], list[int], float, int]) -> Found:
-    """Name the parts of the result of the compiled search."""
+    """Turn the result of the compiled search into a `Found`."""
     pods, order_station, line_visit, value, work = told
     plan = Plan(
         tuple(tuple(new) for new in pods),

@@ -19,7 +19,7 @@ MOST_VISITS = 64
 
 @dataclass(frozen=True)
 class Planning:
-    """Orders, pods and stations at one instant, for a plan of several visits per station.
+    """Orders, pods and stations at one instant, for a plan of several visits to each station.
 
     A *visit* is one pod at one station. Pods under way make the first visits to their station, in
     the order in which they arrive; new visits follow, and each pod makes at most one. Visits of a
@@ -36,7 +36,7 @@ class Planning:
     coming
         Pods under way, shape (F,), those of a station in order of arrival.
     coming_to
-        Station of each of them, shape (F,).
+        Station to which each pod of `coming` is under way, shape (F,).
     order_station
         Station at which an order is open, or -1 if it waits, shape (O,).
     order_until
@@ -56,8 +56,8 @@ class Planning:
     visits
         Maximum number of new visits per station.
     decay
-        Discount factor in (0, 1]: rewards and costs of a visit are multiplied by it once for each
-        earlier visit.
+        Discount factor in (0, 1]: rewards and costs of visit v of a station are multiplied by
+        decay ** v.
 
     Raises
     ------
@@ -166,8 +166,8 @@ class Planning:
     def kept(self) -> list[int]:
         """Number of orders that each station may keep open from one visit to the next.
 
-        This is one less than its slots; more only if more orders are open now and cannot close in
-        the first visit.
+        This is the number of its slots minus one, or, if that is more, the number of its open
+        orders that have lines to plan or get units from a visit under way after the first.
         """
         stays = self.order_until > 0
         stays[self.line_order] = True

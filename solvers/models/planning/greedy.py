@@ -1,4 +1,4 @@
-"""The start rule: visits are added one by one, each the best among a few promising pods."""
+"""The start rule: visits are added one by one, each with the best of a few promising pods."""
 
 from __future__ import annotations
 

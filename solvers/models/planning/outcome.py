@@ -28,7 +28,7 @@ def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
 def solution(
     data: Planning, found: Found, start: Plan | None, bound_steps: int, began: float
 ) -> Solution[Plan]:
-    """Make a `Solution` of a plan, with a bound if its number of steps is positive."""
+    """Make a `Solution` of a plan; compute a bound if `bound_steps` is positive."""
     chosen = better(data, found.plan, start)
     value = objective(data, chosen)
     proven = prices.bound(data, value, bound_steps)

@@ -1,10 +1,10 @@
 r"""A bound for any size: lines have prices, and every visit takes what pays most.
 
-The bound ignores slots, and that lines of an order must be served together; that each line is
-served at most once is replaced by a price :math:`\pi_l \ge 0` (Lagrangian relaxation). Two problems
-remain: for each visit and SKU, which lines to serve with the stock of the pod, at least one per
-visit (a knapsack, bounded by its relaxation), and which pod makes which visit (an assignment). The
-bound is valid for any prices; subgradient steps improve it.
+The bound ignores slots and the rule that lines of an order must be served together. The rule that
+each line is served at most once is replaced by a price :math:`\pi_l \ge 0` (Lagrangian relaxation).
+Two problems remain: for each visit and SKU, which lines to serve with the stock of the pod, at
+least one per visit (a knapsack, bounded by its relaxation), and which pod makes which visit (an
+assignment). The bound is valid for any prices; subgradient steps improve it.
 """
 
 from __future__ import annotations

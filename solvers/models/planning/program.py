@@ -2,24 +2,25 @@ r"""The plan as an integer program.
 
 .. math::
 
-    y_{svp} \text{ pod } p \text{ makes visit } v \text{ of station } s, \quad
-    z_{lsv} \text{ it serves line } l, \quad x_{os}, \quad
-    c_{osv} \text{ order } o \text{ closes then}, \quad
-    h_{osv} \text{ it is kept to the next}
+    & y_{svp}: \text{pod } p \text{ makes visit } v \text{ of station } s, \quad
+    z_{lsv}: \text{this visit serves line } l, \quad
+    x_{os}: \text{order } o \text{ goes to station } s, \\
+    & c_{osv}: \text{order } o \text{ closes in this visit}, \quad
+    h_{osv}: \text{order } o \text{ is kept open until the next visit}
 
-A visit uses no more units than its pod has. Of a waiting order all lines are served or none, at the
-station of the order. An order does not close before its last line is served, and the orders kept
-open fit into the slots.
+A visit uses no more units than its pod has. Either all lines of a waiting order are served, at the
+station of the order, or none. An order does not close before its last line is served, and the
+orders kept open fit into the slots.
 
 Three kinds of rows are stated per line or pod although one aggregated row would suffice, because
-the relaxation is then much tighter (2 % from the best plan instead of 50 %). A line is served only
-if a pod comes that has all its units; a pod comes only if a line is served that it holds; and an
+the relaxation is then much tighter (2 % from the best plan instead of 50 %). A new visit serves a
+line only if its pod has all units of the line; a pod comes only if it serves such a line; and an
 order is kept open from its first line until it closes:
 
 .. math::
 
     z_{lsv} \le \sum_{p: \text{has } l} y_{svp}, \quad
-    y_{svp} \le \sum_{l: \text{on } p} z_{lsv}, \quad
+    y_{svp} \le \sum_{l: p \text{ has } l} z_{lsv}, \quad
     h_{osv} \ge \sum_{v' \le v} (z_{lsv'} - c_{osv'})
 """
 
@@ -265,7 +266,7 @@ class Programme:
     # --- to a plan and back ---------------------------------------------------------------------
 
     def plan(self, columns: Reals) -> Plan:
-        """Read a plan from the columns."""
+        """Turn column values into a plan."""
         data = self.data
         pods: list[list[int]] = [[] for _ in range(data.stations)]
         for (s, _, p), column in sorted(self._y.items()):
@@ -282,7 +283,7 @@ class Programme:
         return Plan(tuple(map(tuple, pods)), order_station, line_visit)
 
     def columns(self, plan: Plan) -> Reals:
-        """Write a feasible plan as columns."""
+        """Turn a feasible plan into column values."""
         data, found = self.data, np.zeros(self.linear.columns)
         for s, pods in enumerate(plan.pods):
             for v, p in enumerate(pods, start=self._first[s]):

@@ -38,7 +38,7 @@ class Plan:
 
 
 def nothing(data: Planning) -> Plan:
-    """Return the plan without new visits and served lines; open orders stay at their station."""
+    """Return the plan without new visits or served lines; open orders stay at their station."""
     none: tuple[tuple[int, ...], ...] = ((),) * data.stations
     return Plan(none, data.order_station.copy(), np.full(data.lines, NONE))
 

@@ -5,9 +5,11 @@ r"""The problem: each station gets as many orders as it has slots, and pods that
     \min \sum_{ps} y_{ps}, \quad \sum_o x_{os} = C_s, \quad \sum_s x_{os} \le 1, \quad
     \sum_s y_{ps} \le 1, \quad \sum_p stock_{pk}\, y_{ps} \ge \sum_o units_{ok}\, x_{os}
 
-for all stations s and SKUs k (Valle and Beasley 2021, who speak of racks and pickers). There may be
-more orders than slots, but every slot is filled. Unlike the pile-on models, this one is static: it
-has no pods under way, no travel and no empty slots.
+for all stations s and SKUs k, where :math:`y_{ps}` is 1 if pod p goes to station s, :math:`x_{os}`
+is 1 if order o goes to station s, and :math:`C_s` is the number of slots (Valle and Beasley 2021,
+who speak of racks and pickers). There may be more orders than slots, but every slot is filled.
+Unlike the pile-on models, this model is static: it has no pods under way, no travel and no empty
+slots.
 """
 
 from __future__ import annotations

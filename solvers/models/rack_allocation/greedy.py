@@ -28,9 +28,9 @@ def solve(
 ) -> Solution[Allocation]:
     """Fill stations one after another, the one with the most slots first.
 
-    A station gets the pod with which it can fill the most further orders, and these orders, fewest
-    units first. If no pod completes an order, it gets the pod that adds the most missing lines.
-    Pods that turn out to be unnecessary are released.
+    A station gets the pod that completes the most further orders, together with these orders, those
+    with the fewest units first. If no pod completes an order, the station gets the pod that adds
+    the most missing lines. Pods that turn out to be unnecessary are released.
 
     Returns
     -------

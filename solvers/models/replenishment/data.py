@@ -4,12 +4,12 @@ r"""The problem: waiting bundles, and pods and stations with free space.
 
     \min \sum_{ps} trip_{ps}\, y_{ps} + \sum_b leave_b\, l_b - \sum_{bp} worth_{bp}\, x_{bp}
 
-Every bundle goes to one pod or is left, :math:`\sum_p x_{bp} + l_b = 1`; a pod that gets a bundle
-is brought to one station, :math:`x_{bp} \le \sum_s y_{ps} \le 1`; the bundles of a pod fit into it,
-and all bundles brought to a station fit into its buffer. What a bundle is worth in a pod is the
-robot time it will save (`bundle_worth_s`), so cost and worth are both in seconds, and a trip is
-made if its bundles save more than it costs. The bundles of one batch are rated one by one; the
-mutual benefit of two new bundles in the same pod is not counted.
+Every bundle b goes to one pod p or is left, :math:`\sum_p x_{bp} + l_b = 1`. A pod that gets a
+bundle is brought to one station s, :math:`x_{bp} \le \sum_s y_{ps} \le 1`. The bundles of a pod fit
+into it, and all bundles brought to a station fit into its buffer. The worth of a bundle in a pod is
+the robot time that it will save (`bundle_worth_s`), so cost and worth are both in seconds, and a
+trip is made if its bundles save more than it costs. The bundles of one batch are rated one by one;
+the mutual benefit of two new bundles in the same pod is not counted.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Bring pod after pod, each time the one whose bundles exceed its trip cost the most."""
+"""Bring pod after pod, each time the pod with the greatest gain from bundles less its trip cost."""
 
 from __future__ import annotations
 
@@ -36,8 +36,8 @@ def solve(
     Returns
     -------
     Where bundles and pods go; ties go to the lowest pod and station. The status is LIMIT if a
-    bundle that must be stored is left, INFEASIBLE if no pod may take it. For the bound, every
-    bundle chooses its best pod independently, and trips cost nothing.
+    bundle that must be stored is left, and INFEASIBLE if no pod may take such a bundle. For the
+    bound, every bundle independently chooses its best pod or is left, and trips cost nothing.
     """
     begin = perf_counter()
     best = np.minimum(-data.worth_s.max(axis=1, initial=-math.inf), data.leave_s)
@@ -115,7 +115,7 @@ class Filling:
         self._room[station] -= sum(self._space[bundle] for bundle in bundles)
 
     def gain(self, pod: int, station: int, wanted: list[int]) -> tuple[float, list[int]]:
-        """Return the gain of bringing a pod with the wanted bundles that fit, and these.
+        """Return the gain of bringing a pod with the wanted bundles that fit, and these bundles.
 
         Parameters
         ----------

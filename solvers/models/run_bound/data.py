@@ -151,7 +151,7 @@ class Orders:
         Maximum number of units in an order; infinity if unknown. Default: unknown.
     lone_units
         Maximum number of units of orders that are served whole from one visit. If the demand is
-        known, these are the units of the orders whose SKUs some pod holds together. Default:
+        known, these are the units of the orders all of whose SKUs are on a single pod. Default:
         unlimited.
     join_visits
         Whether an order assigned to the station while a pod is served there can still be served
@@ -207,8 +207,8 @@ class RunBound:
     def keeping_stock(self) -> RunBound:
         """Return the same problem for runs that store at least as many units as they pick.
 
-        The initial contents of the pods then do not count: at most as many units are picked as
-        stored.
+        The bound then ignores the initial contents of the pods, because no more units are picked
+        than are stored.
         """
         stock = Stock(np.zeros_like(self.stock.pod_units), self.stock.largest_pod_units)
         return replace(self, stock=stock)
@@ -223,7 +223,8 @@ class RunBound:
         """Maximum number of units in one visit at each pick station, shape (S,).
 
         A pod is not refilled while units are picked from it, so a visit cannot yield more than the
-        pod can hold; if no order joins a running visit, nor more than the open orders can ask for.
+        pod can hold. If no order joins a running visit, the visit cannot yield more than the open
+        orders ask for, either.
         """
         largest = np.full(len(self.picking.order_slots), float(self.stock.largest_pod_units))
         if self.orders.join_visits or math.isinf(self.orders.largest_order_units):

@@ -1,8 +1,9 @@
 r"""The least robot time of a visit for bringing its pod and taking it away.
 
-A pod comes to a station from a storage place, where it was lifted, or directly from another
-station, and leaves likewise. A drive from storage belongs to one visit; a drive between two
-stations is shared by two visits, each of which is charged one half:
+A pod comes to a station from a storage location, where it was lifted, or directly from another
+station; it leaves to one or the other. A drive from or to storage belongs to one visit; a drive
+between two stations is shared by two visits, each of which is charged one half. With driving times
+t and storage locations l, the times of station s are
 
 .. math::
 
@@ -42,9 +43,9 @@ def visit_legs(
     Parameters
     ----------
     from_storage_s
-        Least driving time from any storage place to each station, shape (S,), in s.
+        Least driving time from any storage location to each station, shape (S,), in s.
     to_storage_s
-        Least driving time from each station to any storage place, shape (S,), in s.
+        Least driving time from each station to any storage location, shape (S,), in s.
     between_s
         Least driving time from station to station, shape (S, S), in s; +inf where pods do not go
         straight from one to the other. The diagonal is not read: a pod that stays makes no new
@@ -54,7 +55,8 @@ def visit_legs(
 
     Returns
     -------
-    The charges; +inf driving times make a station unreachable and are refused.
+    The charges, +inf for a station that no pod can reach or leave. `PickStations` and `Refill`
+    refuse such a station.
 
     Raises
     ------

@@ -8,30 +8,33 @@ window :math:`[0, H]`. :math:`n_s` units and :math:`v_s` visits are counted at p
 changeover:
 
 1. :math:`a_s n_s + (b_s - a_s) v_s \le H + b_s`. Picks of one visit start at least :math:`a_s`
-   apart, the last of a visit and the first of the next :math:`b_s`; all :math:`n_s - 1` gaps,
-   :math:`v_s - 1` of them changes, fit between 0 and H.
+   apart; the last pick of a visit and the first pick of the next visit start at least :math:`b_s`
+   apart. All :math:`n_s - 1` gaps, :math:`v_s - 1` of them between visits, fit between 0 and H.
 2. :math:`n_s \le \lfloor H / a_s \rfloor + 1`, for the same reason and because units are whole.
 3. :math:`v_s \le n_s \le u_s v_s`: a visit that counts has a unit, and no more than :math:`u_s`
    (see `RunBound.visit_units`).
 4. :math:`m_q \le z_q B`, and :math:`\beta_q m_q \le H + \beta_q`: a visit stores at most B bundles,
    and a bundle occupies its station for :math:`\beta_q`.
 5. Robots: :math:`\sum_s a_s n_s + (w_s + \pi_s - a_s) v_s + \sum_q \beta_q m_q + w_q z_q \le R\,(H
-   + E)`. A visit with k units holds its robot for :math:`(k - 1) a_s + \pi_s`, one with k bundles
-   for :math:`k \beta_q`; each needs a drive in and a drive out, together :math:`w` seconds
+   + E)` with R robots. A visit with k units holds its robot for :math:`(k - 1) a_s + \pi_s`, a
+   visit with k bundles for :math:`k \beta_q`. Each visit needs a drive in and a drive out, which
+   together take at least :math:`w_s` or :math:`w_q` seconds
    (`visit_legs` divides a drive between two stations into halves, so nothing counts twice). Of all
    this, only the drive in of a robot's first visit, and the last service and the drive out of its
-   last visit, can lie outside the window: at most E in total.
+   last visit, can lie outside the window: at most E seconds per robot
+   (`RunBound.end_effect_s`).
 6. Content: :math:`\sum_s n_s \le \sum_p K_p y_p + g \sum_q m_q`, :math:`0 \le y_p \le 1`,
    :math:`\sum_p y_p \le \sum_s v_s`. A unit picked in the window was in its pod p at the start (one
    of at most :math:`K_p`) or came with a bundle of at most g units since; and there are no more
    pods with picks than visits. Integrality of :math:`y_p` is relaxed.
-7. Demand: :math:`\sum_s n_s \le D`.
+7. Demand: :math:`\sum_s n_s \le D`, the number of units asked for.
 8. Slots: :math:`n_s \le l_s + U C_s (v_s + 1)`, :math:`\sum_s l_s \le L`. An order is *lone* if one
-   visit serves it whole, else *spread*; :math:`l_s` units go to lone orders. A spread order served
-   in a visit was open when the visit began or is still open when it ends, so a visit serves at most
-   :math:`2 C_s` of them, with :math:`C_s` slots. Each needs two visits, except for those cut off by
-   either end of the window, at most :math:`C_s` each. So there are no more than :math:`C_s (v_s +
-   1)` spread orders, of at most U units.
+   visit serves it whole, otherwise *spread*. Of the :math:`n_s` units, :math:`l_s` go to lone
+   orders, which have at most L units in total. A spread order served in a visit was open when the
+   visit began or is still open when it ends, so a visit serves at most :math:`2 C_s` of them, with
+   :math:`C_s` slots. Each spread order needs two visits, except for orders cut off by either end of
+   the window, at most :math:`C_s` at each end. So there are no more than :math:`C_s (v_s + 1)`
+   spread orders, of at most U units each.
 
 So the counts of every run are a feasible point, and their total is at most the optimum. The
 reported bound is not the optimum found by a solver but the dual value of its multipliers, made dual
@@ -50,7 +53,7 @@ from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 from rmfs.solvers.models.run_bound.data import RunBound, Throughput
 
 _ROUNDING = 1e-9
-"""Relative rounding error of a quotient of times, added for safety before it is rounded down."""
+"""Relative amount that is added to a quotient of times before the quotient is rounded down."""
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,8 @@ from rmfs.solvers.models.run_bound.data import RunBound
 def single_bounds(data: RunBound) -> dict[str, float]:
     r"""Return upper bounds on the units per hour, each from a single resource.
 
+    With the symbols of `program`, the bounds on the units picked in the window are
+
     - ``stations``: stations never wait for a pod, :math:`\sum_s (H / a_s + 1)`;
     - ``robots``: all visits go to the station with the best ratio, with the largest possible
       pile-on :math:`u_s`: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`, or

@@ -1,10 +1,10 @@
 """Beam search followed by a local search, for inputs too large for the exact methods.
 
 In each step every kept partial plan is extended by a visit of every pod, and the best few plans are
-kept. Of the orders that a pod would serve in part, as many as there are free slots are opened,
-those missing the fewest SKUs first. A second branch opens only orders of which the pod serves at
-least half. Plans are ranked by the number of SKUs that all orders still miss; those of open orders
-count twice, as an open order holds a slot. All plans of a step are scored together, by one matrix
+kept. The orders that a pod would serve in part are opened while slots are free, those missing the
+fewest SKUs first. A second branch opens only orders of which the pod serves at least half of the
+SKUs. Plans are ranked by the number of SKUs that all orders still miss; SKUs of open orders count
+twice, as an open order holds a slot. All plans of a step are scored together, by one matrix
 product. Deterministic: ties go to the plan kept earlier, then the lower pod.
 """
 

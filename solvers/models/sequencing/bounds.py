@@ -1,8 +1,8 @@
 """Lower bounds on the number of visits.
 
-The visiting pods must together hold all needed SKUs, so a minimum cover of these SKUs by pods is a
-lower bound. It is bounded by the duals of the relaxed covering problem (`safe_bound`), rounded up
-to a whole number.
+The visiting pods must together hold all needed SKUs, so the size of a minimum cover of these SKUs
+by pods is a lower bound. This size is itself bounded from below by the duals of the relaxed
+covering problem (`safe_bound`), rounded up to a whole number.
 """
 
 from __future__ import annotations

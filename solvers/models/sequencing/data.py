@@ -5,9 +5,10 @@ other, and an open order takes from a visiting pod every SKU it still misses. Th
 is minimised (Boysen, Briskorn, Emde 2017, mobile robot order picking); consecutive visits of the
 same pod count once, and the stock of a pod suffices for all orders at the station.
 
-A visit has three steps: open orders are served, and complete ones leave (B); orders that this pod
-completes alone come and go one after the other, each occupying a slot for a moment (Z); new orders
-are opened and stay (N). If A denotes the orders that are open before and after the visit:
+A visit has three steps. First, open orders are served, and those now complete leave (set B). Then
+orders that this pod completes alone come and go one after the other, each occupying a slot for a
+moment (set Z). Last, new orders are opened and stay (set N). If A is the set of orders that are
+open before and after the visit, the slots require
 
     |A| + |B| <= C,    |A| + |N| <= C,    |A| + 1 <= C if Z is not empty
 """

@@ -2,11 +2,11 @@
 
 A state is the set of missing SKUs of every order (none: complete; some: open; all: not started,
 unless open before). A transition is one visit: the pod serves the open orders, completes further
-orders by itself if there is a slot, and some of the orders that it serves in part may be opened
-(states after Justkowiak, Kovalyov, Pesch 2024: completed orders, open orders, missing SKUs). Each
-visit costs 1; the remaining cost is estimated by the largest number of visits that any single order
-still needs, which is never too high. So the first complete state is optimal, and the smallest
-estimate in the queue is always a valid bound.
+orders by itself if there is a slot, and some of the orders that it serves in part may be opened.
+(The states are those of Justkowiak, Kovalyov, Pesch 2024: completed orders, open orders, missing
+SKUs.) Each visit costs 1; the remaining cost is estimated by the largest number of visits that any
+single order still needs. As this estimate is never too high, the first complete state is optimal,
+and the smallest estimate in the queue is always a valid bound.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from rmfs.solvers.models.sequencing.sets import Sets, reduce
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 State = tuple[tuple[int, ...], int]
-"""Missing SKUs per order, and the bit set of orders that have been started."""
+"""A state: the missing SKUs of each order, and the bit set of orders that have been started."""
 
 
 def solve(

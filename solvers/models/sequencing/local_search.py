@@ -1,10 +1,10 @@
 """Local search on the sequence of visits: remove a visit, then repair the plan.
 
-For a given sequence of visits, `open_orders` decides when to open which order, as in interval
-scheduling: of the orders that would lose by waiting, it opens the one that ends first. The search
-removes a visit, then tries random moves (exchange two visits, move one, replace one) and keeps
-those that do not increase the number of missing SKUs. When none is missing, the plan is one visit
-shorter, and the next visit is removed.
+For a given sequence of visits, `still_open` decides when to open which order, as in interval
+scheduling: of the orders that would lose by waiting, it opens those that end first. The search
+removes a visit, then tries random moves (exchange two visits, move a visit, or replace a pod) and
+keeps those that do not increase the number of incomplete orders. When every order is complete, the
+plan is one visit shorter, and the next visit is removed.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from rmfs.solvers.models.sequencing.data import (
 from rmfs.solvers.models.sequencing.sets import useful_pods
 
 MOVES = 400
-"""Default number of moves tried in total."""
+"""Default number of moves tried in total, removals included."""
 
 
 def improve(
@@ -36,7 +36,7 @@ def improve(
     plan
         A feasible plan.
     moves
-        Maximum number of moves to try. Default: `MOVES`.
+        Number of moves, removals included, after which the search ends. Default: `MOVES`.
     seed
         Seed of the moves. Default 0.
 

@@ -1,8 +1,8 @@
 r"""The integer program, over the visits of a plan of known length.
 
 A heuristic plan of T visits bounds the horizon. Binary columns: v_tp pod p makes visit t, s_ot
-order o has started by visit t, f_ot it has finished by visit t, d_okt it takes SKU k at visit t,
-c_ot it comes and goes at visit t, r_t some order does.
+order o has started by visit t, f_ot order o has finished by visit t, d_okt order o takes SKU k at
+visit t, c_ot order o comes and goes at visit t, r_t some order comes and goes at visit t.
 
 .. math::
 

@@ -5,9 +5,10 @@ r"""The problem: a batch of pods that need a place, and the places that are free
     \min \sum_{p,l} (travel_{pl} + visits_p \cdot access_l)\, x_{pl}, \quad
     \sum_l x_{pl} = 1, \quad \sum_p x_{pl} \le 1
 
-Robot time now is weighed against robot time later: for a pod that is needed again soon, a longer
-drive to a place near the stations pays off. (The batch form of the "cheapest place" rule of
-Krenzler, Xie, Li 2018; without expected visits it becomes nearest-place storage.)
+Here :math:`x_{pl}` is 1 if pod p goes to place l. Robot time now is weighed against robot time
+later: for a pod that is needed again soon, a longer drive to a place near the stations pays off.
+This is the batch form of the "cheapest place" rule of Krenzler, Xie, Li 2018; without expected
+visits it becomes nearest-place storage.
 """
 
 from __future__ import annotations

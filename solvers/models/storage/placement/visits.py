@@ -1,4 +1,4 @@
-r"""Expected visits of a pod: its share of the demand.
+r"""Expected visits of a pod: its share of the demand, divided by the pile-on.
 
 Units of SKU k wanted within the horizon, :math:`D_k = backlog_k + rate_k \cdot horizon`, are taken
 from the pods in proportion to their stock :math:`s_{kp}`, up to the units in stock:

@@ -1,15 +1,16 @@
-r"""The problem: stays with known begin and end, and zones of equal places.
+r"""The problem: stays with known start and end, and zones of equal places.
 
 .. math::
 
     \min \sum_{sz} c_{sz} x_{sz}, \quad \sum_z x_{sz} = 1, \quad
     \sum_{s \text{ present at } t} x_{sz} \le k_z \text{ for all } t, \quad x \in \{0, 1\}
 
-A stay lasts from the moment when a place is assigned to a pod until the pod has left it, ``[begin,
-end)``. (Weidinger, Boysen, Briskorn 2018 decide on single places, that is, zones of one place.)
-Places of a zone are interchangeable. If no more than :math:`k_z` stays overlap at any time, each
-can have a place of its own, because interval graphs are perfect. A pod that is already stored is a
-stay that begins now and is allowed only in its present zone.
+Here :math:`x_{sz}` is 1 if stay s is in zone z, and zone z has :math:`k_z` places. A stay lasts
+from the moment when a place is assigned to a pod until the pod has left it, ``[begin, end)``.
+(Weidinger, Boysen, Briskorn 2018 decide on single places, that is, zones of one place.) Places of a
+zone are interchangeable: if no more than :math:`k_z` stays overlap at any time, each can have a
+place of its own, because interval graphs are perfect. A pod that is already stored is a stay that
+begins now and is allowed only in its present zone.
 """
 
 from __future__ import annotations
@@ -61,8 +62,8 @@ class Stays:
     def periods(self) -> tuple[NDArray[np.int64], NDArray[np.int64], int]:
         """Find the fewest moments at which occupied places must be counted.
 
-        The number of stays can only grow until one ends, so it suffices to count just before an
-        end: these are the maximal sets of stays that are present together.
+        The number of stays present can only grow until a stay ends, so it suffices to count just
+        before a stay ends, when the stays present form a maximal set of simultaneous stays.
 
         Returns
         -------

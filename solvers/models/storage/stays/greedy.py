@@ -27,8 +27,8 @@ def solve(
 
     Stays with the largest cost difference between zones per hour choose first, as many short stays
     make better use of a good place than one long stay. If that leaves a stay without a zone, stays
-    choose in the order of their begin, which fails only if some zones are not allowed or there is
-    no room at all.
+    choose again in the order in which they begin. This second sequence fails only if some zones are
+    not allowed or there are too few places for any choice.
 
     Returns
     -------

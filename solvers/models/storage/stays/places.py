@@ -1,4 +1,4 @@
-"""Assigns each stay a place within its zone that no other stay occupies meanwhile."""
+"""Assignment of a place within its zone to each stay; no two stays share a place at any time."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from rmfs.solvers.models.storage.stays.data import Stays, violations
 def places(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.int64]:
     """Give every stay the lowest-numbered place of its zone that is free when it begins.
 
-    Places of a zone are numbered from 0. When stays are processed in the order of their begin, no
-    more places are needed than there are simultaneous stays (interval colouring).
+    Places of a zone are numbered from 0. As stays are processed in the order in which they begin,
+    no more places are needed than there are simultaneous stays (interval colouring).
 
     Parameters
     ----------

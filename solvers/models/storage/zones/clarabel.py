@@ -1,8 +1,8 @@
 """The optimal steady state, solved by the interior-point method Clarabel through cvxpy.
 
 cvxpy compiles a problem of a given size into a cone program once. Every number of `Zones` is a
-parameter of it (disciplined parametrised programming), so solving again with other numbers skips
-the compilation. Each solve starts cold, so its result depends on its input alone.
+parameter of that program (disciplined parametrised programming), so solving again with other
+numbers skips the compilation. Each solve starts cold, so its result depends on its input alone.
 """
 
 from __future__ import annotations

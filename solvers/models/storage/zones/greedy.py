@@ -19,10 +19,11 @@ _PORTIONS = 16
 def solve(
     data: Zones, limits: Limits = NO_LIMITS, *, seed: int = 0, start: ZonePlan | None = None
 ) -> Solution[ZonePlan]:
-    """Place classes in portions, most visited first, each where a visit then takes least time.
+    """Place classes in portions, most visited first, each portion where a visit takes least time.
 
-    The time includes the delay that the added traffic causes. The price of a zone is the least
-    saving of a pod there compared with the best zone that still has room; 0 if no zone has room.
+    The time includes the delay that one more visit causes itself and others. The price of a zone is
+    the least that a pod there saves compared with the best zone that still has room; 0 if no zone
+    has room.
 
     Returns
     -------

@@ -76,7 +76,7 @@ def price_bound(data: Zones, plan: ZonePlan) -> float:
     Parameters
     ----------
     data
-        The problem; it has zones.
+        The problem, with at least one zone.
     plan
         Any plan; for an optimal one, the bound equals its robot time.
 
@@ -121,7 +121,7 @@ def place_values(
 ) -> NDArray[np.float64]:
     """Rate places for pods: travel, delay, and price of the place minus worth of the pod.
 
-    Price and worth count for the duration of the stay.
+    Price and worth are rates per hour and are multiplied by the expected stay.
 
     Parameters
     ----------

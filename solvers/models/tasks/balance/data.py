@@ -6,10 +6,11 @@ r"""The problem: free robots, waiting tasks, stations with queues, due times.
     + \sum_t leave_t \Bigl(1 - \sum_r x_{rt}\Bigr)
     + \sum_s \sum_{k=1}^{n_s} (queue_s + k - 1)\, service_s
 
-with :math:`n_s \le room_s` the number of robots sent to station s. The k-th of them finds
-:math:`queue_s + k - 1` pods before it, so each further robot to the same station costs more, which
-balances the stations. The waiting time is an estimate for the whole group and does not affect the
-lateness, so the cost of a pair is fixed.
+where :math:`x_{rt}` is 1 if robot r does task t, w is the weight of lateness, and :math:`n_s \le
+room_s` is the number of robots sent to station s. The k-th of them finds :math:`queue_s + k - 1`
+pods before it, so each further robot sent to the same station costs more, which balances the
+stations. The waiting time is an estimate for the whole group and does not affect the lateness, so
+the cost of a pair is fixed.
 """
 
 from __future__ import annotations

@@ -5,9 +5,9 @@ r"""The problem: free robots and waiting tasks.
     \min \sum_{rt} travel_{rt}\, x_{rt} + \sum_t leave_t \Bigl(1 - \sum_r x_{rt}\Bigr), \quad
     \sum_r x_{rt} \le 1, \quad \sum_t x_{rt} \le 1
 
-Leaving a task costs as much as waiting for another robot; if that cost is infinite, the task must
-be done. Robots may stay idle. (This is the Hungarian dispatch of the literature, except that tasks
-may wait.)
+where :math:`x_{rt}` is 1 if robot r does task t. The cost of leaving a task should be the cost of
+waiting for another robot; if it is infinite, the task must be done. Robots may stay idle. (This is
+the Hungarian dispatch of the literature, except that tasks may wait.)
 """
 
 from __future__ import annotations

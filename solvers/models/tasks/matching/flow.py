@@ -17,5 +17,5 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the robot of each task, or `LEFT`, by cost scaling on whole numbers."""
+    """Find the robot of each task, or `LEFT`, by cost scaling on integers."""
     return solve_by(data, "min_cost_flow")

@@ -1,4 +1,4 @@
-"""Greedy matching: the pair that saves most first."""
+"""Greedy matching: the pair that saves the most comes first."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Repeatedly match the pair that saves most compared with leaving the task.
+    """Repeatedly match the pair that saves the most compared with leaving the task.
 
     Tasks that must be done come first. For the bound, robots may do any number of tasks.
 

@@ -8,8 +8,9 @@ left. With :math:`s_o = \min_l store_{ol}`, following o costs
 
     \min_l (store_{ol} + fetch_{lt}) - s_o + bring_t + s_t + w \max(0, e_t - due_t)
 
-where :math:`e_t` is the earliest arrival over all chains. The first difference is what the drive to
-t adds to storing the pod of o at its nearest place; storing itself is counted with o.
+where :math:`e_t` is the earliest arrival over all chains. The first difference is the time that the
+drive to the pod of t adds to storing the pod of o at its nearest place; :math:`s_o` itself is part
+of the cost of o.
 """
 
 from __future__ import annotations
@@ -69,9 +70,10 @@ def from_robots(
 
     Returns
     -------
-    When each robot can be at each pod, shape (R, T), in s; the drive there beyond storing the pod
-    it carries at the nearest place, shape (R, T), in s; and that storing, shape (R,), in s. Ways
-    that are not allowed are infinite.
+    Three arrays, in s; ways that are not allowed are infinite. The first is the time at which each
+    robot can be at each pod, shape (R, T). The third is the drive with which each robot stores the
+    pod it carries at the nearest place, shape (R,), 0 without a pod. The second is the whole drive
+    of each robot to each pod, less the third, shape (R, T).
     """
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
     stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)

@@ -62,9 +62,10 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
     keep
         A plan.
     tasks
-        Number of tasks after each owner and robot, and of owners before each task.
+        Number of tasks kept after each owner and each robot, and of owners and robots kept before
+        each task.
     places
-        Number of places considered for each.
+        Number of places kept for each pair of owner and task, and for the end of each route.
 
     Returns
     -------

@@ -1,17 +1,18 @@
 r"""Routes by column generation: a bound over whole routes, and a choice among those generated.
 
 The linear program over all routes of all robots (`master`) is solved by adding routes that are
-cheap under its prices (`pricing`). Whatever the prices :math:`v, w \ge 0`, no plan costs less than
+cheap at its prices (`pricing`). For any prices :math:`v_t \ge 0` of tasks and :math:`w_l \ge 0` of
+places, no plan costs less than
 
 .. math::
 
     \sum_t \min(v_t, skip_t) - \sum_l w_l + \sum_r \min_{p \in r} cost_p(v, w)
 
-(Lagrange; Desaulniers, Desrosiers, Solomon 2005, Column Generation, chapter 1). Prices are rounded
-to parts of a tick, and the pricing calculates with these in exact integers. The bound therefore
-holds to the last digit, even if the search for a cheapest route ends early. All costs are whole
-ticks, so the bound
-is rounded up to a tick.
+where p runs over the routes of robot r (Lagrange; Desaulniers, Desrosiers, Solomon 2005, Column
+Generation, chapter 1). Prices are rounded to parts of a tick (a millisecond), and the pricing
+calculates with them in exact integers. The bound therefore holds to the last digit, even if the
+search for a cheapest route ends early. All costs are whole ticks, so the bound is rounded up to a
+tick.
 
 At the end HiGHS chooses whole routes among those known. If a gap remains, every route that costs
 less than its robot's cheapest one plus the gap is listed: no other route can be part of a better

@@ -1,10 +1,11 @@
 """Neighbourhood search: tasks are taken out of the routes and inserted again (Shaw 1998).
 
-Each step takes a few tasks out and inserts them, and those left, in random order where each adds
-least, or stores some pods anew. Slightly worse routes are accepted at first (threshold accepting,
-Dueck and Scheuer 1990). Without a start, all tasks are inserted by urgency into empty routes, and
-into routes of one task each found by assignment; the better plan is the start. The steps are
-compiled: `rmfs/traffic/src/sequences`.
+A step takes a few tasks out of the routes; these tasks, and the tasks that were left before, are
+then inserted in random order, each where it adds the least cost. Other steps choose new places for
+some pods. Slightly worse routes are accepted at first (threshold accepting, Dueck and Scheuer
+1990). Without a start, tasks are inserted by urgency into two plans: empty routes, and routes of
+one task each found by assignment. The search starts from the better result. The steps are compiled:
+`rmfs/traffic/src/sequences`.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def solve(
     seed: int = 0,
     start: Routes | None = None,
 ) -> Solution[Routes]:
-    """Search from insertion into the routes of the start, or of two simple plans.
+    """Insert the remaining tasks into the start, or into two simple plans, and search from there.
 
     Parameters
     ----------
@@ -56,8 +57,8 @@ def solve(
 
     Returns
     -------
-    The routes, never worse than the start. The status is LIMIT if none were found that do all tasks
-    that must be done. The bound is that of `relaxed_bound`.
+    The routes, never worse than the start. The status is LIMIT if no routes were found that do all
+    tasks that must be done. The bound is that of `relaxed_bound`.
 
     Raises
     ------

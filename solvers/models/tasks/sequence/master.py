@@ -6,7 +6,8 @@ r"""The restricted master program: which of the known routes are driven.
     \sum_{p \in r} x_p = 1, \quad \sum_{p \ni t} x_p + s_t = 1, \quad
     \sum_p n_{pl} x_p \le 1
 
-where :math:`n_{pl}` is how often route p uses place l. Costs are in ticks.
+where :math:`x_p` is 1 if route p is driven, :math:`s_t` is 1 if task t is left, and :math:`n_{pl}`
+is the number of times that route p uses place l. Costs are in ticks (milliseconds).
 """
 
 from __future__ import annotations

@@ -7,10 +7,10 @@ costs
 
 The search extends routes task by task, the most promising first (A*). The estimate of the remaining
 cost allows tasks to be repeated and rounds times down to steps, so it is never too high. A partial
-route is dropped if another one to the same task is no later, costs no more, and has used only tasks
-(and remembered places) that this one has used as well: every completion of the dropped route also
-completes the other, at no higher cost. Between two tasks, a place is ignored if another one is both
-nearer and cheaper.
+route is dropped if another partial route to the same task is no later, costs no more, and has used
+no task (and no remembered place) that the dropped route has not used: every completion of the
+dropped route also completes the other, at no higher cost. Between two tasks, a place is ignored if
+another place is both nearer and cheaper.
 
 Places may repeat within a route unless they are *remembered*. This is a relaxation: the cheapest
 route found never costs more than the cheapest feasible one. All numbers are integers, in parts of a
@@ -36,7 +36,7 @@ LABEL_ENTRIES = 2000
 
 _NEVER = NEVER * PARTS
 _STEPS = 100
-"""Time steps of the estimates."""
+"""Number of time steps of the estimates."""
 
 _LONGEST_S = 3600.0
 """Time up to which routes are estimated if nothing limits them, in s."""
@@ -281,7 +281,7 @@ class Pricing:
 
         Returns
         -------
-        Routes, and a bound, at most `below`.
+        The routes found, and a bound, which is at most `below`.
         """
         start = _Label(0, int(self._ticks.ready[robot]), NONE, 0, (), ())
         heap = self._further(robot, start, below, 0)

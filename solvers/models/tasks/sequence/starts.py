@@ -1,4 +1,4 @@
-"""Plans to start a search from: nothing done, or one task of each robot, both by assignment."""
+"""Initial plans for a search, found by assignment: no tasks, or at most one task per robot."""
 
 from __future__ import annotations
 
@@ -13,21 +13,25 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, TaskS
 
 
 def without_tasks(data: TaskSequence) -> Routes | None:
-    """Return the cheapest way to store the pods that robots carry; None if there is none.
+    """Return the routes that only store the pods that robots carry, at the least driving.
 
     Parameters
     ----------
     data
         The problem.
+
+    Returns
+    -------
+    The routes; None if there are not enough places.
     """
     return _stored(data, ((),) * data.robots)
 
 
 def first_tasks(data: TaskSequence) -> Routes | None:
-    """Give each robot at most one task, at the least cost if each had a place of its own.
+    """Give each robot at most one task, at the least cost of driving, lateness and tasks left.
 
-    The cost is that of driving, lateness and the tasks left. Places are then assigned at the least
-    driving.
+    At first, every pod is assumed to be stored at its best place, even if others are, too. Places
+    are then assigned at the least driving.
 
     Parameters
     ----------

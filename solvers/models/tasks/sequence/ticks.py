@@ -26,8 +26,8 @@ class Route(NamedTuple):
     tasks
         Its tasks, in sequence.
     places
-        Where pods are stored, in order: first the one the robot carries, if any, then those of the
-        tasks.
+        Where pods are stored, in sequence: first the pod that the robot carries, if any, then the
+        pods of the tasks.
     """
 
     robot: int
@@ -41,7 +41,7 @@ class Route(NamedTuple):
 
 
 class Ticks:
-    """The times of a problem in whole ticks; `NEVER` for what is not allowed.
+    """The times of a problem in whole ticks (milliseconds); trips not allowed take `NEVER`.
 
     An *owner* of a pod is robot r, or task R + t.
 
