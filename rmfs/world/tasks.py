@@ -79,7 +79,7 @@ class Task:
     kind
         Name of the kind in tables, traces and the viewer.
     rests
-        Whether a robot with this task may get another one at any time.
+        Whether a robot with this task may get another task at any time.
     robot
         Index of the robot.
     pod

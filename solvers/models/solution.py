@@ -39,7 +39,7 @@ class Status(Enum):
     """Values proven to be within the gap limit of the optimum."""
 
     FEASIBLE = "feasible"
-    """Values that satisfy every constraint; a heuristic, or a search ended by its limit."""
+    """Values that satisfy every constraint, from a heuristic or a search ended by its limit."""
 
     INFEASIBLE = "infeasible"
     """The constraints are proven to be unsatisfiable."""

@@ -138,7 +138,9 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) 
 
 
 def with_relaxed_bound(backend: Backend) -> Backend:
-    """Wrap a back end: if a limit ends its search, report the relaxation's bound if it is better.
+    """Wrap a back end so that a search ended by a limit also reports the relaxation's bound.
+
+    The better one of the two bounds is reported.
 
     Parameters
     ----------

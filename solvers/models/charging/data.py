@@ -207,7 +207,7 @@ class Charging:
 
     @property
     def missed_s(self) -> float:
-        """Cost of one slot in which a needed robot is missing, in addition to `idle`, in s."""
+        """Additional cost of a slot away from work in which the robot is needed, in s."""
         return self.slot_s * (1 - self.idle)
 
 

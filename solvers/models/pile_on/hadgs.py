@@ -10,8 +10,9 @@ single pod completes an order, `SETS` sets of pods are sampled, each covering a 
 the best set is improved by `SEARCHES` local searches, each of which exchanges one pod; these are
 the paper's l1 = 10 and l2 = 3. Our choices where the paper leaves details open: stations are
 processed in ascending order of the travel of their inbound pods; orders are taken by worth, then
-by units. The paper has no shortages of orders already placed, and no weights `unit` and `visit`;
-here each unit of shortage that a pod eases lowers K by `open_unit`, and both weights are counted.
+by units. The paper does not consider shortages of orders already placed, and has no weights `unit`
+and `visit`; here each unit of shortage that a pod eases lowers K by `open_unit`, and both weights
+are counted.
 """
 
 from __future__ import annotations

@@ -102,7 +102,9 @@ def solve(
 
 
 def station_groups(data: PileOn) -> list[Integers]:
-    """Return the pairs of stations to decide together: neighbours in a ring of all stations.
+    """Return the pairs of stations to decide together.
+
+    They are the neighbours in a ring of the stations that have free slots or shortages.
 
     Parameters
     ----------

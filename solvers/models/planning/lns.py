@@ -1,7 +1,8 @@
 """Neighbourhood search: visits are removed from a plan, and others inserted (Shaw 1998).
 
-Each step replaces, moves or adds a visit of a station, or swaps visits of two stations. The new pod
-is the best, by a quick estimate, of a few pods drawn from those that could serve something.
+Each step replaces, moves or adds a visit of a station, swaps visits of two stations, or
+redistributes what two stations serve. A new pod is the best, by a quick estimate, of a few pods
+drawn from those that could serve something.
 Slightly worse plans are accepted at first (threshold accepting, Dueck and Scheuer 1990). Lines
 served at other stations stay there, so the time of a step does not depend on the number of
 stations. The steps are compiled: `rmfs/traffic/src/visits`.
@@ -56,7 +57,7 @@ def solve(
 
     Returns
     -------
-    The plan, not worse than the start, nor than the start rule's plan from the same start.
+    The plan, no worse than the start and no worse than the start rule's plan from the same start.
     """
     began = time.perf_counter()
     known = first_visits(data, start, pods)

@@ -3,8 +3,8 @@
 In each step every kept partial plan is extended by a visit of every pod, and the best few plans are
 kept. The orders that a pod would serve in part are opened while slots are free, those missing the
 fewest SKUs first. A second branch opens only orders of which the pod serves at least half of the
-SKUs. Plans are ranked by the number of SKUs that all orders still miss; SKUs of open orders count
-twice, as an open order holds a slot. All plans of a step are scored together, by one matrix
+missing SKUs. Plans are ranked by the number of SKUs that all orders still miss; SKUs of open orders
+count twice, as an open order holds a slot. All plans of a step are scored together, by one matrix
 product. Deterministic: ties go to the plan kept earlier, then the lower pod.
 """
 

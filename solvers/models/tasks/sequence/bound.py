@@ -70,10 +70,10 @@ def from_robots(
 
     Returns
     -------
-    Three arrays, in s; ways that are not allowed are infinite. The first is the time at which each
-    robot can be at each pod, shape (R, T). The third is the drive with which each robot stores the
-    pod it carries at the nearest place, shape (R,), 0 without a pod. The second is the whole drive
-    of each robot to each pod, less the third, shape (R, T).
+    Three arrays, in s, infinite for ways that are not allowed: the time at which each robot can be
+    at each pod, shape (R, T); its drive there less its storing drive, shape (R, T); and its storing
+    drive, shape (R,). The storing drive is that to the place nearest to a robot with a pod; it is 0
+    for a robot without a pod.
     """
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
     stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)

@@ -44,7 +44,7 @@ def solve(
     data
         The problem.
     limits
-        `deterministic_s` and `gap`. Default: to optimality.
+        `deterministic_s` and `gap` apply. Default: to optimality.
     seed
         Seed of the solver. Default 0.
     start
