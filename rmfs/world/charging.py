@@ -1,4 +1,4 @@
-"""Tasks in which robots charge, and the stations where they do."""
+"""Tasks in which robots charge, and the stations where they charge."""
 
 from __future__ import annotations
 

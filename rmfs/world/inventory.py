@@ -176,8 +176,8 @@ class Inventory:
     def commit(self, sku: int, units: int) -> None:
         """Subtract units from `free_stock`; a negative number adds them again.
 
-        This is due when an order is assigned to a station, or when requests of a queued order are
-        bound to a pod.
+        Units are subtracted when their order is assigned to a station, or when requests of a queued
+        order are bound to a pod.
         """
         self._free_stock[sku] -= units
 

@@ -20,13 +20,14 @@ HOUR_S = 3600.0
 def after_work(fatigue: float, rate_per_h: float, work_s: float) -> float:
     """Return the fatigue after a period of work: F + (1 - F) (1 - exp(-rate x time)).
 
-    Source: Jaber, Givi and Neumann (2013), Applied Mathematical Modelling 37, 7287-7299.
+    F is the fatigue before this period. Source: Jaber, Givi and Neumann (2013), Applied
+    Mathematical Modelling 37, 7287-7299.
     """
     return 1.0 - (1.0 - fatigue) * exp(-rate_per_h * work_s / HOUR_S)
 
 
 def after_rest(fatigue: float, rate_per_h: float, rest_s: float) -> float:
-    """Return the fatigue after a period of rest: F exp(-rate x time); source as above."""
+    """Return the fatigue after a period of rest: F exp(-rate x time); F as in `after_work`."""
     return fatigue * exp(-rate_per_h * rest_s / HOUR_S)
 
 

@@ -79,7 +79,7 @@ class WorldState:
     incoming
         Units of all bundles created and not yet stored, per SKU, shape (K,).
     order_redraws
-        Number of redraws because stock could not serve a drawn order line.
+        Number of times that an order line was drawn again because stock could not serve it.
     orders_short
         Number of orders that arrived although stock could not serve them.
     batteries

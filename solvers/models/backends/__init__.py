@@ -5,8 +5,8 @@ deterministic: they use one thread, a fixed seed and limits in counted work. Run
 wall-clock time can only raise an error, never change a result.
 
 `assignment` and `flow` solve linear assignment and minimum-cost flow. Both problems are polynomial,
-so they are solved to the end without a limit; the work counted depends on the size alone.
-Optimality is proven by dual potentials that are computed here and do not rely on the solver.
+so they are solved to the end without a limit. Optimality is proven by dual potentials that are
+computed here and do not rely on the solver.
 """
 
 from rmfs.solvers.models.backends.outcome import Outcome as Outcome

@@ -42,7 +42,7 @@ class Assigned(NamedTuple):
         Proven lower bound on the cost of every assignment.
     work
         Number of entries read: those of the table, and those compared in each round of the search
-        for the bound. The unit of work of the assignment back ends.
+        for the bound. This is the unit of work of the assignment back ends.
     """
 
     column: NDArray[np.int64]

@@ -6,7 +6,7 @@ pods for its missing lines. Pruning keeps the cheapest few pods per wanted SKU a
 cheapest few orders per station, the cheapest few stations per order, and the nearest few robots per
 pod. Versatile pods are cheap and appear for many SKUs, so the union stays small. The loss from
 pruning is measured in `tests/benchmarks/test_models_pile_on.py`; a bound of the pruned model is not
-valid for the full model (`relaxation.bound` computes one that is).
+valid for the full model (`relaxation.bound` computes a valid one).
 """
 
 from __future__ import annotations
@@ -185,7 +185,9 @@ def _best_places(data: PileOn, price: Floats, keep: Pruning) -> Flags:
 
 
 def call_price(data: PileOn) -> Floats:
-    """Cost of calling a pod, with its nearest robot, per line it could serve alone, shape (P, S).
+    """Cost of calling a pod with its nearest robot, per line that the pod could serve alone.
+
+    Its shape is (P, S).
 
     Parameters
     ----------

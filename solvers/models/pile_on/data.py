@@ -171,7 +171,7 @@ class PileOn:
 
     @cached_property
     def first_line(self) -> Integers:
-        """First line of each order, with the number of lines at the end, shape (O + 1,)."""
+        """First line of each order, followed by the number of lines, shape (O + 1,)."""
         return np.searchsorted(self.line_order, np.arange(self.orders + 1)).astype(np.int64)
 
     @cached_property

@@ -1,7 +1,7 @@
 """HADGS: alternate between orders and pods, station by station (Jiao et al. 2025, section 3).
 
-For each station in turn: (OA) place every order that the station's pods already cover; (PS and TA)
-call the pod p, with its nearest robot r, that minimises
+For each station in turn: place every order that the station's pods already cover (step OA of the
+paper); then call the pod p, with its nearest robot r, that minimises (steps PS and TA)
 
     K(p) = -complete * (orders p would complete) + travel * (d_rp + d_ps)     (eq. 23)
 

@@ -26,7 +26,7 @@ def solve(
     pruning: Pruning | None = None,
     bound_steps: int = prices.ITERATIONS,
 ) -> Solution[Assignment]:
-    """Decide orders, pods and robots together; limits as for `neighbourhood.solve`.
+    """Decide on orders, pods and robots together; limits as for `neighbourhood.solve`.
 
     Parameters
     ----------
@@ -35,9 +35,9 @@ def solve(
     start
         A further decision to start from. Default: only that of pod match.
     pruning
-        How many candidates CP-SAT is given. Default: those of `Pruning`.
+        How many candidates CP-SAT is given. Default: the defaults of `Pruning`.
     bound_steps
-        Steps of `prices.bound`; 0 still gives a bound, a weaker one. Default `prices.ITERATIONS`.
+        Number of steps of `prices.bound`; 0 gives a weaker bound. Default `prices.ITERATIONS`.
 
     Returns
     -------

@@ -111,7 +111,7 @@ class PartialAssignment:
         return covered & self.open_orders & self.candidates.places[:, station]
 
     def place(self, order: int, station: int) -> None:
-        """Give an order a slot and take its units from the stock left."""
+        """Give an order a slot, and take its units from the remaining stock."""
         self._take(order, station)
         self.order_station[order] = station
         self.slots[station] -= 1
@@ -221,9 +221,9 @@ class PartialAssignment:
     def best_prospect_call(self, station: int) -> Call | None:
         """The best pod whose prospects at a station are worth more than its call.
 
-        As (5) of the program demands, the pod must serve an order that has a slot there. This is
-        either an order already placed or one of the pod's prospects. The latter gets the slot of a
-        placed order, chosen so that no other called pod is left without an order.
+        As constraint (5) of `program` demands, the pod must serve an order with a slot there. This
+        is either an order already placed or one of the pod's prospects. The latter gets the slot of
+        a placed order, chosen so that no other called pod is left without an order.
         """
         pods = self.free_pods(station)
         if self._spare_order(station) < 0:

@@ -6,11 +6,12 @@ w_o order is started, b_rp robot r fetches pod p, v_sk number of open units that
 C_s is the number of free slots.
 
 In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os and e_o = sum_s y_os, so that only x,
-y, g, b, v remain. That is M1G with h = y + g substituted (y <= h holds by itself), with the empty
-slots u_s = C_s - sum_o y_os, and without its link columns d: "2 d_ops <= y_os + x_ps, x_ps <= sum_o
-d_ops" says only that a called pod shares a SKU with an order placed there, which is (5). There is
-one difference: M1G also rewards prospects of stations without free slots, which only the leftovers
-of inbound pods can serve; here columns g exist only if C_s > 0.
+y, g, b, v remain. That is the model M1G of Jiao et al. 2025 with h = y + g substituted (y <= h
+holds by itself), with the empty slots u_s = C_s - sum_o y_os, and without its link columns d:
+"2 d_ops <= y_os + x_ps, x_ps <= sum_o d_ops" says only that a called pod shares a SKU with an order
+placed there, which is (5). There is one difference: M1G also rewards prospects of stations without
+free slots, which only the leftovers of inbound pods can serve; here columns g exist only if
+C_s > 0.
 
 .. math::
 
@@ -29,8 +30,8 @@ of inbound pods can serve; here columns g exist only if C_s > 0.
     (8)\quad & q_l (z_{ls} + g_{os}) \le \min(q_l, surplus_{sk})
                + \textstyle\sum_p \min(q_l, a_{pk}) x_{ps}
 
-(8) is our addition. It is implied for integer solutions; in the relaxation it cuts off fractions of
-a well-stocked pod, which (2) allows, and so makes the bound tight.
+Constraint (8) is our addition. It is implied for integer solutions; in the relaxation it cuts off
+fractions of a well-stocked pod, which (2) allows, and so makes the bound tight.
 """
 
 from __future__ import annotations
@@ -63,7 +64,7 @@ def formulate(
     candidates
         The pairs to use.
     strengthen
-        Whether to add (8). Default: yes.
+        Whether to add constraint (8). Default: yes.
     """
     builder = ProgramBuilder()
     columns = add_columns(builder, data, candidates)
@@ -113,7 +114,7 @@ def solve_program(
     candidates
         The pairs to use, None for all. With a proper subset there is no bound (-inf).
     strengthen
-        Whether to add (8).
+        Whether to add constraint (8).
 
     Returns
     -------

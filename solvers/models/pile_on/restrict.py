@@ -112,7 +112,7 @@ class Part:
 
     @property
     def lines(self) -> Integers:
-        """The lines of its orders, in the numbering of the full input."""
+        """The lines of the part's orders, in the numbering of the full input."""
         return np.flatnonzero(np.isin(self.full.line_order, self.orders))
 
     def start(self) -> Assignment:

@@ -14,7 +14,7 @@ number of slots that the order takes:
 
 where the `open_line` term belongs to `Variant.LATER` alone. With the default weights, `WHOLE` and
 robots this is M1G (Jiao et al. 2025, eq. 14), except for prospects of stations without free slots;
-its "order could be filled" h_o is c_o here.
+h_o of the paper, "order could be filled", is c_o here.
 """
 
 from __future__ import annotations

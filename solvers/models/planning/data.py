@@ -22,8 +22,8 @@ class Planning:
     """Orders, pods and stations at one instant, for a plan of several visits to each station.
 
     A *visit* is one pod at one station. Pods under way make the first visits to their station, in
-    the order in which they arrive; new visits follow, and each pod makes at most one. Visits of a
-    station are counted from 0, those under way included.
+    the order in which they arrive. New visits follow; each pod makes at most one new visit. Visits
+    of a station are counted from 0, those of pods under way included.
 
     A line is served by one visit. An order occupies a slot from its first visit to its last.
     Between visits a station keeps one slot free, so that orders served by a single visit can pass

@@ -25,7 +25,8 @@ class PickStations:
     unit_transfer_s
         Time for which one unit occupies the station, in s.
     unit_pick_s
-        Time for which one unit holds the robot, in s. The longer of the two must be positive.
+        Time for which one unit holds the robot, in s. The longer of this and `unit_transfer_s` must
+        be positive.
     changeover_s
         Least time from the moment a robot may leave the head of the queue until the next robot can
         be served, in s; 0 is always valid.
@@ -248,7 +249,7 @@ class RunBound:
 
 @dataclass(frozen=True)
 class Throughput:
-    """Counts of the best conceivable run in the window.
+    """Counts in the window, of the best conceivable run or of a simulated run.
 
     Attributes
     ----------

@@ -11,21 +11,20 @@ changeover:
    apart; the last pick of a visit and the first pick of the next visit start at least :math:`b_s`
    apart. All :math:`n_s - 1` gaps, :math:`v_s - 1` of them between visits, fit between 0 and H.
 2. :math:`n_s \le \lfloor H / a_s \rfloor + 1`, for the same reason and because units are whole.
-3. :math:`v_s \le n_s \le u_s v_s`: a visit that counts has a unit, and no more than :math:`u_s`
-   (see `RunBound.visit_units`).
+3. :math:`v_s \le n_s \le u_s v_s`: a visit that counts has at least one unit and at most
+   :math:`u_s` units (see `RunBound.visit_units`).
 4. :math:`m_q \le z_q B`, and :math:`\beta_q m_q \le H + \beta_q`: a visit stores at most B bundles,
    and a bundle occupies its station for :math:`\beta_q`.
 5. Robots: :math:`\sum_s a_s n_s + (w_s + \pi_s - a_s) v_s + \sum_q \beta_q m_q + w_q z_q \le R\,(H
    + E)` with R robots. A visit with k units holds its robot for :math:`(k - 1) a_s + \pi_s`, a
    visit with k bundles for :math:`k \beta_q`. Each visit needs a drive in and a drive out, which
-   together take at least :math:`w_s` or :math:`w_q` seconds
-   (`visit_legs` divides a drive between two stations into halves, so nothing counts twice). Of all
-   this, only the drive in of a robot's first visit, and the last service and the drive out of its
-   last visit, can lie outside the window: at most E seconds per robot
-   (`RunBound.end_effect_s`).
+   together take at least :math:`w_s` or :math:`w_q` seconds (`visit_legs` divides a drive between
+   two stations into halves, so nothing counts twice). Of these times, only the drive in of a
+   robot's first visit, and the last service and the drive out of its last visit, can lie outside
+   the window: at most E seconds per robot (`RunBound.end_effect_s`).
 6. Content: :math:`\sum_s n_s \le \sum_p K_p y_p + g \sum_q m_q`, :math:`0 \le y_p \le 1`,
    :math:`\sum_p y_p \le \sum_s v_s`. A unit picked in the window was in its pod p at the start (one
-   of at most :math:`K_p`) or came with a bundle of at most g units since; and there are no more
+   of at most :math:`K_p`) or has come since in a bundle of at most g units; and there are no more
    pods with picks than visits. Integrality of :math:`y_p` is relaxed.
 7. Demand: :math:`\sum_s n_s \le D`, the number of units asked for.
 8. Slots: :math:`n_s \le l_s + U C_s (v_s + 1)`, :math:`\sum_s l_s \le L`. An order is *lone* if one
@@ -69,9 +68,9 @@ class Columns:
 
 
 def violations(data: RunBound, values: Throughput) -> list[str]:
-    """Return the inequalities that do not hold; empty if all do.
+    """Return a message if the counts violate an inequality; empty if they satisfy all of them.
 
-    The counts of a simulated run must satisfy all inequalities, too.
+    The counts of every simulated run must satisfy all inequalities.
 
     Parameters
     ----------

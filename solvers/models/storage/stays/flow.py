@@ -3,8 +3,8 @@ r"""Stays in two zones as a minimum-cost flow, exact at any size.
 With two zones, a stay that is not in zone 0 is in zone 1. The :math:`k_0` places of zone 0 move
 along the periods as units of flow: a unit either waits from one period to the next or follows the
 arc of a stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. As the stays present in period t that
-are not in zone 0 must fit into zone 1, at most :math:`k_0 - (present_t - k_1)^+` units may wait
-there. (This is the k-colouring of intervals by flow of Carlisle and Lloyd 1995, with a limit on
+are not in zone 0 must fit into zone 1, at most :math:`k_0 - (present_t - k_1)^+` units may wait in
+period t. (This is the k-colouring of intervals by flow of Carlisle and Lloyd 1995, with a limit on
 waiting.) A stay that must be in zone 0 takes its unit out of the flow and puts it back.
 """
 

@@ -5,9 +5,10 @@ r"""The integer program, with the pods of each zone carried over from period to 
     y_{zt} = y_{z,t-1} + \sum_{s \text{ begins in } t} x_{sz}
     - \sum_{s \text{ is over in } t} x_{sz}, \qquad 0 \le y_{zt} \le k_z
 
-is equivalent to one row per maximal set of stays, but the number of entries grows linearly with the
-number of stays instead of quadratically. For each zone by itself the matrix is a network matrix, so
-the relaxation is tight.
+where :math:`y_{zt}` is the number of pods in zone z in period t. This is equivalent to one row per
+maximal set of simultaneous stays, but the number of entries grows linearly with the number of stays
+instead of quadratically. For each zone by itself the matrix is a network matrix, so the relaxation
+is tight.
 """
 
 from __future__ import annotations
@@ -29,8 +30,8 @@ def program(data: Stays, *, whole: bool) -> LinearProgram:
     data
         The problem.
     whole
-        Whether y is declared integer. It is whole if x is; CP-SAT requires the declaration, branch
-        and bound does not.
+        Whether y is declared integer. It is integer if x is; CP-SAT requires the declaration,
+        branch and bound does not.
 
     Returns
     -------

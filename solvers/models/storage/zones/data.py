@@ -6,7 +6,7 @@ r"""The problem: the mean number of pods of each class in each zone in the stead
     f_j = \sum_i r_i x_{ij}, \quad
     \sum_j x_{ij} = m_i, \quad \sum_i x_{ij} \le k_j, \quad x \ge 0
 
-Of the :math:`m_i` pods of class i, :math:`x_{ij}` are stored in zone j on average, which has
+Of the :math:`m_i` pods of class i, :math:`x_{ij}` are in zone j on average; the zone has
 :math:`k_j` places. A pod of class i is visited :math:`r_i` times an hour. A visit to a pod in zone
 j takes :math:`t_{ij}` seconds of robot time and :math:`\gamma_j f_j` seconds of delay, which grows
 with the traffic :math:`f_j` of the zone. The objective is robot seconds per hour. Without
