@@ -8,7 +8,8 @@ left. With :math:`s_o = \min_l store_{ol}`, following o costs
 
     \min_l (store_{ol} + fetch_{lt}) - s_o + bring_t + s_t + w \max(0, e_t - due_t)
 
-where :math:`e_t` is the earliest arrival over all chains. The first difference is the time that the
+where w is the weight of lateness and :math:`e_t` is the earliest arrival at the station of t over
+all chains; the other symbols are those of `TaskSequence`. The first difference is the time that the
 drive to the pod of t adds to storing the pod of o at its nearest place; :math:`s_o` itself is part
 of the cost of o.
 """
@@ -72,8 +73,8 @@ def from_robots(
     -------
     Three arrays, in s, infinite for ways that are not allowed: the time at which each robot can be
     at each pod, shape (R, T); its drive there less its storing drive, shape (R, T); and its storing
-    drive, shape (R,). The storing drive is that to the place nearest to a robot with a pod; it is 0
-    for a robot without a pod.
+    drive, shape (R,). The storing drive takes the pod that the robot carries to the nearest place;
+    it is 0 for a robot without a pod.
     """
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
     stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)

@@ -6,7 +6,7 @@ first. The distance to the next pod depends on where the last one is stored, so 
 together with the sequence of tasks. This is a generalised travelling-salesman problem as in
 Gharehgozli and Zaerpour 2020, with several robots and time windows.
 
-Places vacated by fetched pods are not available within the same plan, which is made anew before
+Places vacated by fetched pods are not available within the same plan; a new plan is made before
 they matter (rolling horizon). Queues at stations are not modelled; the time windows represent them.
 """
 

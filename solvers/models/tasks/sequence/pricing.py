@@ -43,7 +43,7 @@ _LONGEST_S = 3600.0
 
 
 class Prices(NamedTuple):
-    """Prices in parts.
+    """Prices in parts of a tick.
 
     Attributes
     ----------
