@@ -171,7 +171,7 @@ class Observer:
         """Report that a replenishment order (bundle) joined the backlog (`bundle.created_s`)."""
 
     def bundle_promised(self, bundle: Bundle) -> None:
-        """Report that RPS chose the pod of a bundle (`bundle.pod`) but has not released it yet."""
+        """Report that RPS chose a bundle's pod (`bundle.pod`) but has not released the choice."""
 
     def bundles_released(self, pod: int) -> None:
         """Report that RPS released the bundles promised to a pod."""
@@ -221,8 +221,8 @@ class Observer:
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
         """Report a call of a controller, which took `wall_s` of wall time.
 
-        `decisions` is the number of decisions made, without those based on an optimiser's
-        solution, which the `Call` counts.
+        `decisions` is the number of decisions made by a rule. Decisions that follow from an
+        optimiser's solution are counted in its `Call` instead.
         """
 
     def rule_decided(self, problem: str, time_s: float) -> None:

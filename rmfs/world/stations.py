@@ -113,7 +113,7 @@ class PickStation(Station[PickTask]):
     orders
         The open orders by index, in the order of assignment.
     requests
-        Their requests not yet bound to a pod.
+        Requests of the open orders not yet bound to a pod.
     queued
         The pool: orders of the backlog reserved for this station, in the order in which they
         joined.
@@ -178,7 +178,8 @@ class ReplenishmentStation(Station[ReplenishTask]):
     bundles
         Number of the bundles counted in `used`.
     waiting
-        For each pod, the assigned bundles not yet part of a task; oldest pod first.
+        For each pod, the assigned bundles not yet part of a task. The pod that has been waited for
+        the longest comes first.
     version
         Increases whenever a bundle is added to `waiting`.
     """

@@ -187,10 +187,10 @@ class ReplenishTask(StationTask):
 
 @dataclass(slots=True, eq=False)
 class VisitTask(StationTask):
-    """The task of bringing a pod to a station of another kind, which derives its own class.
+    """The task of bringing a pod to a station of another kind; each kind derives its own class.
 
-    The controller of the stations decides whether a visit is needed; it is possible if the pod is
-    available or already carried.
+    The controller of the stations decides whether a visit is needed. The task is possible if the
+    pod is available or already carried.
     """
 
     kind = "visit"

@@ -88,7 +88,7 @@ class World(OrderOperations):
     def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
         """Start the task of bringing a pod to a pick station.
 
-        All open requests of orders at the station that the pod can serve are bound to it.
+        All open requests of orders at the station that the pod can serve are bound to the pod.
         """
         task = PickTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)

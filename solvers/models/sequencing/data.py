@@ -1,4 +1,4 @@
-"""Rack sequencing at one pick station: the problem, a plan, and its rules.
+r"""Rack sequencing at one pick station: the problem, a plan, and its rules.
 
 Orders are processed with at most C of them open at a time, pods visit the station one after the
 other, and an open order takes from a visiting pod every SKU it still misses. The number of visits
@@ -10,7 +10,10 @@ orders that this pod completes alone come and go one after the other, each occup
 moment (set Z). Last, new orders are opened and stay (set N). If A is the set of orders that are
 open before and after the visit, the slots require
 
-    |A| + |B| <= C,    |A| + |N| <= C,    |A| + 1 <= C if Z is not empty
+.. math::
+
+    |A| + |B| \le C, \quad |A| + |N| \le C, \quad
+    |A| + 1 \le C \text{ if } Z \text{ is not empty}
 """
 
 from __future__ import annotations
