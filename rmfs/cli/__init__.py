@@ -1,8 +1,9 @@
-"""The command line, the only part that may import everything.
+"""The command line: the only part of rmfs that may import all others.
 
 A user error is reported as one line on standard error, with exit code 2. An interruption ends with
-exit code 130. A detected defect is reported as one line, with a file to send and exit code 1.
-Commands import their modules when they run, so that help and errors appear without delay.
+exit code 130. A defect that the program detects is reported as one line that names a file to send;
+the exit code is 1. Commands import their modules when they run, so that help and errors appear
+without delay.
 """
 
 from __future__ import annotations

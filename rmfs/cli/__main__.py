@@ -1,4 +1,4 @@
-"""`python -m rmfs.cli`."""
+"""Entry point of `python -m rmfs.cli`."""
 
 import sys
 

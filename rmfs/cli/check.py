@@ -77,7 +77,7 @@ def audited(folders: list[Path]) -> None:
 
 
 def told_of_energy(layout: Layout, energy: Energy) -> list[str]:
-    """Describe, in lines, the energy that a fleet draws and the energy available to it."""
+    """Return lines that describe the energy that a fleet draws and the energy available to it."""
     from rmfs.simulation.charging.balance import balance, working_w
 
     working = working_w(layout, energy)

@@ -1,4 +1,4 @@
-"""Reports defects that the program has detected itself: one line, and a file to send."""
+"""Reports on defects that the program detects: one line for the user, and a file to send."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class LazyGroup(TyperGroup):
         return [*super().list_commands(ctx), *(n for n in ELSEWHERE if n not in self.commands)]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Return a command; for one that is not loaded, a stub with its help."""
+        """Return a command, or a stub with its help text if it is not loaded."""
         if cmd_name in ELSEWHERE and cmd_name not in self.commands:
             return TyperGroup(name=cmd_name, help=ELSEWHERE[cmd_name][1])
         return super().get_command(ctx, cmd_name)

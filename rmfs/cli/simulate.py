@@ -197,7 +197,7 @@ def run(
 def kept_decisions(
     folder: Path, inputs: dict[str, str], seed: int, changes: Sequence[str] = ()
 ) -> DecisionRecorder:
-    """Return the observer that writes the questions of a run to a folder."""
+    """Return the observer that saves every question to an optimiser as a file in a folder."""
     from rmfs.solvers.decisions.recording import DecisionRecorder
 
     names = {part: Path(given).stem for part, given in inputs.items()}
@@ -252,7 +252,7 @@ def default_name(
         The `--set` arguments. If they are unsuitable or too long for a name, unsuitable characters
         are replaced, the text is cut to `LONGEST` characters, and a hash is added.
     pacing
-        The pacing as specified by the user; part of the changes unless `instant`.
+        The pacing as specified by the user. Unless it is `instant`, it is added to the changes.
     """
     told = [text.replace(".name=", "=") for text in changes]
     told += [] if pacing == "instant" else [f"pacing={pacing}"]
@@ -266,13 +266,13 @@ def default_name(
 
 
 def proven(done: Run) -> CheckReport:
-    """Report the step, check the trace of a run, and return the result."""
+    """Show the current step, check the trace of a run, and return the report."""
     step("checking the trace")
     return done.check()
 
 
 def conclude(target: Path, footprint: pd.Series, report: CheckReport | None) -> None:
-    """Print the main figures; exit with code 1 on a defect: an unsafe trace or a score above 1."""
+    """Print the main figures; exit with code 1 if the trace is unsafe or a units score above 1."""
     from rich.console import Console
 
     from rmfs.measure.summary import summarised

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def step(text: str) -> None:
-    """Print the current step on standard error, unless that is a terminal."""
+    """Print the current step on standard error, unless standard error is a terminal."""
     if not sys.stderr.isatty():
         print(f"rmfs: {text}", file=sys.stderr, flush=True)
 
@@ -52,8 +52,8 @@ def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, floa
 def terminable() -> Iterator[None]:
     """Return a context in which SIGTERM, sent by batch systems, acts like Ctrl-C.
 
-    A command that is ended leaves nothing half-written. Only the main thread can set this; in
-    others the context has no effect.
+    A command that is ended leaves nothing half-written. Only the main thread can handle signals; in
+    other threads the context has no effect.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

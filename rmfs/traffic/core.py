@@ -76,14 +76,17 @@ def build(layout: Layout, options: Options) -> Core:
 
 
 def fork(core: Core, options: Options, memo: dict[int, Any]) -> tuple[Core, Options]:
-    """Return a copy of a core in its state, and its options; a planner in Python is deep-copied."""
+    """Copy a core and its options in their current state; a planner in Python is deep-copied."""
     code = copy.deepcopy(options.planner.code, memo)
     options = options._replace(planner=options.planner._replace(code=code))
     return core.fork(_conversation(options.planner)), options
 
 
 def to_bytes(core: Core, options: Options) -> bytes:
-    """Return a core as bytes: a line of JSON, the planner, pickled, if in Python, and the state."""
+    """Return a core as bytes.
+
+    They consist of a line of JSON, the pickled planner if it is written in Python, and the state.
+    """
     planner = options.planner
     code = b"" if planner.code is None else pickle.dumps(planner.code)
     head = {

@@ -29,9 +29,9 @@ Question = Search | Along | Conflict | Reserved
 """Questions that a planner may yield, and the answers it gets.
 
 `Search(agent, around=(), until_us=None, labels=2000)`
-    The best path of an agent (by its number in the call) around all granted motion and around the
-    paths of others, or None: to its goal, or within a window that ends at `until_us`. At most
-    `labels` labels are expanded.
+    The best path of an agent (its index in `agents`) that avoids all granted motion and the paths
+    in `around`; None if none is found. It leads to the goal or, if `until_us` is given, is searched
+    within a window that ends then. At most `labels` labels are expanded.
 `Along(agent, stops, ready_us=None)`
     The path over the given stops (waypoints) by straight runs and elevator rides, starting as early
     as possible but not before `ready_us`, ignoring other robots.
@@ -98,14 +98,14 @@ class PathPlanner(Protocol):
         Returns
         -------
         list
-            A path for each agent, or None if it should stay and be planned again. If a path does
-            not reach the goal, the rest is added without checks.
+            A path for each agent, or None if the agent should stay and be planned again. If a path
+            does not reach the goal, the core appends the rest without checking it for conflicts.
         """
         ...
 
 
 class Conversation:
-    """Adapts a planner to the core, which uses plain tuples."""
+    """Adapter of a planner to the core, which passes plain tuples."""
 
     def __init__(self, planner: PathPlanner) -> None:
         self._planner = planner

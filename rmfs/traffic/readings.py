@@ -22,10 +22,11 @@ class Readings:
     def motion(self) -> dict[str, NDArray[Any]]:
         """Return totals per robot since the last reset, up to now, each of shape (R,).
 
-        `distance_m` and `loaded_distance_m`. The times `moving_s`, `turning_s`, `waiting_s`
-        (standing on the way), `served_s` (standing at a station), `idle_s`, `transfer_s` (lifting,
-        setting down) and `riding_s` (elevators) add up to the elapsed time. `queueing_s` counts
-        from entering a queue zone to reaching the station and overlaps with the others.
+        The distances are `distance_m` and, with a pod, `loaded_distance_m`. The times `moving_s`,
+        `turning_s`, `waiting_s` (standing on the way), `served_s` (standing at a station),
+        `idle_s`, `transfer_s` (lifting, setting down) and `riding_s` (elevators) add up to the
+        elapsed time. `queueing_s` counts from entering a queue zone to reaching the station and
+        overlaps with the others.
         """
         return self._core.motion()
 
@@ -97,11 +98,11 @@ class Readings:
         return joined_holds(self._core.trace(0)[0])
 
     def trace_after(self, known: int) -> tuple[dict[str, NDArray[Any]], int]:
-        """Return the part of the trace that is not yet known, for following a run in progress.
+        """Return the part of the trace that previous calls have not returned, to follow a run.
 
         The motion that each robot is currently executing is included, and is returned again until
-        it has ended: a row replaces what was known of its robot from `t0_us` on. A robot that stood
-        still during several calls has several consecutive rows (`joined_holds`).
+        it has ended. A row therefore replaces all earlier rows of its robot from `t0_us` on. A
+        robot that stood still during several calls has several consecutive rows (`joined_holds`).
 
         Parameters
         ----------

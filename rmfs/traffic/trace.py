@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def joined_holds(trace: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Merge consecutive rows in which a robot stands still into one.
 
-    This makes the trace independent of how often it, or statistics, were requested during the run.
+    The trace then does not depend on how often trace or statistics were requested during the run.
 
     Parameters
     ----------

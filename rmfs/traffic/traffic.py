@@ -28,7 +28,7 @@ class Traffic(Readings):
     Parameters
     ----------
     layout
-        The warehouse; queues are named by the common numbering of its stations.
+        The warehouse. A queue is identified by the number of its station among all stations.
     record_trace
         Whether every piece of motion is kept (see `trace`).
     cost_table_bytes
@@ -41,10 +41,10 @@ class Traffic(Readings):
     Attributes
     ----------
     advance
-        Function of a time in us: advance to the next events up to then, or to that time, and return
-        the events as tuples in the order of `TrafficEvent`.
+        Function of a time limit in us. It advances to the next events, or to the limit if none
+        occurs before, and returns the events as tuples in the order of `TrafficEvent`.
     command
-        Function of a robot and its program, a list of pairs of a `Step` and its argument.
+        Function that gives a robot its program, a list of pairs of a `Step` and its argument.
 
     Raises
     ------
@@ -189,8 +189,9 @@ class Traffic(Readings):
         by_us
             Delay in microseconds, not negative.
         begun
-            Whether motion in progress may be shifted too, as it must be when robots outside the
-            simulation are late. Otherwise nothing happens if that would be needed.
+            Whether motion in progress may be postponed as well, as is necessary when real robots
+            outside the simulation are late. If it may not, and would have to be, nothing is
+            changed.
 
         Returns
         -------
@@ -201,7 +202,8 @@ class Traffic(Readings):
     def clearance(self, robot: int) -> list[int]:
         """Return the next waypoints of a robot's run to which it may drive now.
 
-        They are in the sequence of the run. All robots planned to use them earlier have left.
+        They are returned in the sequence of the run. All robots that were to use them earlier have
+        left them.
         """
         return self._core.clearance(robot)
 
@@ -226,7 +228,8 @@ class Traffic(Readings):
     def hold(self, robot: int, by_us: int) -> int | None:
         """Simulate a breakdown: let a robot stand still for a while at its next stop.
 
-        Robots that are to use a waypoint after it wait; all keep their paths and their sequence.
+        Robots that are to use a waypoint after this robot wait. All robots keep their paths, and
+        the sequence in which they use waypoints.
 
         Returns
         -------
@@ -241,8 +244,9 @@ class Traffic(Readings):
         """Let motions begin late from now on, each with the same probability.
 
         Lateness is drawn just before a robot turns for a run, so that no plan knows of it. Robots
-        due to use a waypoint after the late one wait; all keep their order unless it is repaired. A
-        delay that would force a driving robot to stop is moved to the late robot's next stop.
+        that are to use a waypoint after the late robot wait. The order in which robots use
+        waypoints changes only by `repair`. A delay that would force a driving robot to stop is
+        moved to the late robot's next stop.
 
         Parameters
         ----------
@@ -251,8 +255,8 @@ class Traffic(Readings):
         least_us, most_us
             Shortest and longest delay in microseconds, uniformly distributed.
         repair
-            Whether robots that are made to wait are replanned, alone or ahead of the late robot, if
-            that is better for both.
+            Whether a robot that a late robot makes wait is replanned, alone or ahead of the late
+            robot, if that is better for the two together.
         seed
             Seed of the draws, below 2^64.
 
@@ -277,8 +281,8 @@ class Traffic(Readings):
 
         Returns
         -------
-        Whether the speed was changed; not if the robot is in motion, or if another robot already in
-        motion would have to wait for it.
+        Whether the speed was changed. It is not changed if the robot is in motion, or if another
+        robot already in motion would have to wait for it.
         """
         kind = int(self._layout.robot_kind[robot]) + level * len(self._layout.robot_kinds)
         return self._core.change_kind(robot, kind)
@@ -286,7 +290,7 @@ class Traffic(Readings):
     def close(self, waypoints: Sequence[int]) -> list[int]:
         """Close waypoints from now on: no robot enters them until they are reopened.
 
-        A robot on a closed waypoint, or that can no longer stop before one, continues and leaves
+        A robot that is on a closed waypoint, or can no longer stop before one, continues and leaves
         it. A robot whose plan leads there later gets another plan, or stops before it and waits. An
         idle robot on a closed waypoint stays. Close all waypoints of an elevator to put it out of
         service.
@@ -298,8 +302,8 @@ class Traffic(Readings):
 
         Returns
         -------
-        Robots that still drive through a closed waypoint because they cannot stop, or because other
-        robots need every place where they could.
+        Robots that still drive through a closed waypoint because they cannot stop before it, or
+        because other robots need every place where they could stop.
 
         Raises
         ------
@@ -319,7 +323,7 @@ class Traffic(Readings):
         self._core.reopen(list(waypoints))
 
     def cut_off(self) -> CutOff:
-        """Return the storage places and stations that closed waypoints cut off."""
+        """Return the storage locations and stations that closed waypoints cut off."""
         return CutOff(*self._core.cut_off())
 
     def count_energy(
@@ -337,12 +341,12 @@ class Traffic(Readings):
         ----------
         model
             Eleven numbers in the order of `Model` in src/energy.rs: mass of a robot (kg), rolling
-            resistance per weight, share that rotating parts add to inertia, efficiency of the
-            drive, share of braking energy that is recuperated, resistance to turning per weight
-            (m), radius of gyration (m), height (m) and efficiency of a lift, standby power without
-            and with a pod (W).
+            resistance per weight, inertia of rotating parts as a share of the mass, efficiency of
+            the drive, share of braking energy that is recuperated, resisting torque of turns per
+            weight (m), radius of gyration (m), height (m) and efficiency of a lift, standby power
+            without and with a pod (W).
         pods_kg
-            Mass of each pod with its stock, shape (P,).
+            Mass of each pod with its stock in kg, shape (P,).
         initial_j
             Initial energy in each battery in J, shape (R,). Default: 0.
         battery

@@ -25,7 +25,7 @@ class EventKind(IntEnum):
     LIFTED = 2
     """The robot has lifted the pod (pod)."""
     DEPARTED = 3
-    """A plan by which the robot leaves a storage place was accepted (the waypoint left)."""
+    """A plan by which the robot leaves a storage location was accepted (the waypoint it leaves)."""
     QUEUE_ENTERED = 4
     """The robot reached a queue zone (station); not reported at present."""
     AT_HEAD = 5
@@ -39,7 +39,10 @@ class EventKind(IntEnum):
 
 
 class Piece(IntEnum):
-    """Kinds of rows in a trace; of GUIDED motion only the way is known, not the position on it."""
+    """Kinds of rows in a trace.
+
+    For GUIDED motion, only the path of a robot is known, and not its position on the path.
+    """
 
     HOLD = 0
     TURN = 1
@@ -51,7 +54,7 @@ class Piece(IntEnum):
 
 
 class TripKind(IntEnum):
-    """Destination of a trip: a pod, a station, a storage place for a pod, or a resting place."""
+    """Destination of a trip: a pod, a station, a storage location, or a place to rest."""
 
     TO_POD = 0
     TO_STATION = 1
@@ -80,13 +83,13 @@ class PlannedMove(NamedTuple):
 
 
 class CutOff(NamedTuple):
-    """Storage places and stations that closed waypoints cut off.
+    """Storage locations and stations that closed waypoints cut off.
 
     Attributes
     ----------
     storage
-        Storage places (waypoints) that are closed, or that a pod cannot be carried to or from for
-        one of the remaining stations.
+        Storage locations (waypoints) that are closed, or from which a pod cannot be carried to one
+        of the remaining stations and back.
     stations
         Stations (numbers) that are closed, or that no pod can reach or leave.
     """

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.trips.streams import Command, TripStream
 
 STALL_S = 1800.0
-"""Time without events, while robots wait for a path, after which driving is given up, in s."""
+"""Driving is given up if no event occurs for this time, in s, while robots wait for a path."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,9 @@ class TripRun:
     Attributes
     ----------
     warmup_s, end_s
-        Simulated time before counting starts, and end of the simulation.
+        Simulated time before counting starts, and end of the simulation, in s.
     wall_s
-        Wall time after the warm-up.
+        Wall time after the warm-up, in s.
     stalled
         Empty, or the positions of all robots if nothing could move any more.
     report
@@ -52,12 +52,12 @@ class TripRun:
 
     @property
     def trips_per_h(self) -> float:
-        """Trips finished after the warm-up, per hour: to pods, stations, storage places, points."""
+        """Trips to any kind of goal finished after the warm-up, per simulated hour."""
         return len(self.delays_s) / (self.end_s - self.warmup_s) * 3600.0
 
     @property
     def delays_s(self) -> NDArray[np.float64]:
-        """Return how much longer each trip took than without other robots, in s."""
+        """Delay of each trip in s: its duration minus the unhindered time, without other robots."""
         trips = self.traffic.trips()
         taken: NDArray[np.float64] = (trips["t1_us"] - trips["t0_us"]) / 1e6
         unhindered: NDArray[np.float64] = trips["unhindered_s"]
@@ -91,15 +91,16 @@ def drive(
     Parameters
     ----------
     duration_s, warmup_s
-        Simulated time that is measured, and simulated time before it.
+        Simulated time that is measured, and simulated time before it, in s.
     proven
-        Whether the independent checker should prove the motion safe; this records the trace.
+        Whether the independent checker should prove the motion safe. If so, the trace is recorded.
     stall_s
-        Time without events after which driving is given up if robots wait for a path.
+        Driving is given up if no event occurs for this time, in s, while robots wait for a path.
     cost_table_bytes
-        Memory for tables of unhindered times, in bytes.
+        Memory for tables of unhindered travel times, in bytes.
     each
-        Called whenever time has advanced, at most to the next event.
+        Called with the traffic whenever simulated time has advanced; no advance goes beyond the
+        next event.
     """
     traffic = Traffic(
         layout, record_trace=proven, planner=planner, cost_table_bytes=cost_table_bytes

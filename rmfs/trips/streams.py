@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 SERVICE_S = 5.0
-"""Mean service time of a pod; short, so that stations do not mask differences of planners."""
+"""Mean service time of a pod in s; short, so that stations do not mask differences of planners."""
 
 
 class Command(NamedTuple):
@@ -50,23 +50,25 @@ class TripStream(Protocol):
         """Return the commands that follow an event of traffic."""
 
     def given(self, command: Command) -> Iterable[Command]:
-        """Return the commands to other robots that follow from a command to one robot."""
+        """Return commands to other robots that become possible when a command has been given."""
 
 
 class PodTrips:
     """Robots fetch pods, bring them to stations and store them again.
 
-    Pods and free storage places are divided among the robots, so that robots do not affect each
-    other's choices. At most one robot less than the queue of a station holds, but at least
-    one, is sent there at a time; further robots wait beneath their pods (condition W3 of
+    Pods and free storage locations are divided among the robots, so that robots do not affect each
+    other's choices. If the queue of a station has n places, at most max(1, n - 1) robots are on
+    their way to it or in it; further robots wait beneath their pods (condition W3 of
     `docs/safety.md`).
 
     Parameters
     ----------
     seed
-        Seed of pods, stations, places and service times, 0 or greater.
+        Seed of the choice of pods, stations and storage locations and of service times, 0 or
+        greater.
     service_s
-        Mean service time of a pod, uniform between half of it and one and a half times it.
+        Mean service time of a pod in s. Service times are uniform between half and one and a half
+        times this mean.
 
     Raises
     ------
@@ -99,7 +101,7 @@ class PodTrips:
             yield from self._next(0, robot)
 
     def follow(self, time_us: int, kind: int, robot: int, _value: int) -> Iterator[Command]:
-        """Continue when a robot has reached a station or finished its program."""
+        """Return the next command of a robot that has reached a station or finished its program."""
         if kind == EventKind.AT_HEAD:
             yield self._store(time_us, robot)
         elif kind == EventKind.IDLE and robot not in self._waiting[self._station[robot]]:
@@ -195,8 +197,8 @@ def random_goals(goals: Sequence[int], seed: int, robot: int) -> Iterator[int]:
 def random_trips(layout: Layout, seed: int, *, service_s: float = SERVICE_S) -> TripStream:
     """Return trips suitable for a layout.
 
-    With stations and pods these are `PodTrips`; otherwise robots drive between storage places or,
-    if there are fewer than two, between any waypoints.
+    If the layout has stations and pods, the result is `PodTrips`. Otherwise robots drive between
+    storage locations or, if there are fewer than two of them, between any waypoints.
 
     Raises
     ------
