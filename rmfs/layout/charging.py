@@ -27,11 +27,12 @@ class SwapParameters(Model):
     power_w: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 500.0
     """Charging power in W of each battery in stock."""
     ready_share: Annotated[float, Field(gt=0, lt=1)] = 0.9
-    """Charge level from which a battery in stock may be used; a robot waits for such a battery."""
+    """Charge level (share) from which a battery in stock may be used; a robot waits for such a
+    battery."""
 
 
 class RecoveryKind(StationKind):
-    """A kind of station where robots without pods get energy; charge assignment (CA) sends them."""
+    """Kind of station where robots without pods get energy; charge assignment (CA) sends robots."""
 
     task = "rmfs.world.charging:ChargeTask"
     state = "rmfs.world.charging:RecoveryStation"
@@ -43,7 +44,7 @@ class RecoveryKind(StationKind):
 
     @property
     def long_run_w(self) -> float:
-        """Maximum average power in W of a station in the long run."""
+        """Maximum average power in W that a station can supply in the long run."""
         raise NotImplementedError
 
 
@@ -59,12 +60,12 @@ class Charger(RecoveryKind):
 
     @property
     def head_w(self) -> float:
-        """The power of a place."""
+        """Charging power of a place, in W."""
         return float(self.parameters.power_w)
 
     @property
     def long_run_w(self) -> float:
-        """The power of a place that is always occupied."""
+        """Charging power of a place that is always occupied, in W."""
         return self.head_w
 
 
@@ -80,5 +81,5 @@ class Swap(RecoveryKind):
 
     @property
     def long_run_w(self) -> float:
-        """The charging power of all its batteries."""
+        """Total charging power of all batteries in stock, in W."""
         return float(self.parameters.power_w * self.parameters.batteries)

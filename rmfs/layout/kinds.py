@@ -1,10 +1,10 @@
 """Kinds of station: everything that belongs to one, from layout file to viewer colour.
 
-A kind is one class that names its parts, each by class or by reference (`module:Class`): the
-layout, which holds the kind, is read before the world exists and does not import it. Pick and
-replenishment stations are kinds like any other. Other kinds are named in layout files by
-`module:Class`, by `path/to/file.py:Class`, or by the name under which a distribution registers them
-in the entry-point group `rmfs.stations`.
+A kind is one class that names its parts, each by class or by reference (`module:Class`). References
+are possible because a layout holds its kinds, and layouts are read without importing the modules
+that simulate. Pick and replenishment stations are kinds like any other. Other kinds are named in
+layout files by `module:Class`, by `path/to/file.py:Class`, or by the name under which a
+distribution registers them in the entry-point group `rmfs.stations`.
 """
 
 from __future__ import annotations
@@ -94,12 +94,12 @@ class StationKind:
         return self.name, written, self.parameters.model_dump(mode="json")
 
     def part(self, name: str, base: type[T]) -> type[T]:
-        """Return one of its parts, such as `service`, which is derived from `base`.
+        """Return the class of one of its parts, such as `service`; it must be derived from `base`.
 
         Raises
         ------
         InputError
-            If it cannot be imported, or is not derived from `base`.
+            If the class cannot be imported, or is not derived from `base`.
         """
         return resolve(getattr(self, name), base, f"{name} of {self.name} stations")
 
@@ -190,7 +190,7 @@ def station_kind(
     Parameters
     ----------
     name
-        Key of its table below `other_stations`, which is its name.
+        Name of the kind, which is the key of its table below `other_stations`.
     reference
         Its class.
     folder
@@ -199,7 +199,7 @@ def station_kind(
     Raises
     ------
     InputError
-        If there is no such kind, it has another name, or a parameter is wrong.
+        If there is no such kind, its class has another name, or a parameter is wrong.
     """
     key = f"other_stations.{name}"
     try:

@@ -44,7 +44,8 @@ def load_with_notes(
     name_or_path
         A shipped layout, or a file: `.toml` (parameters), `.json` (explicit layout), `.txt` (drawn
         as text), `.xlayo` or `.xinst` (RAWSim-O), or `.map` (grid map, with the stations and
-        storage places of `NAME.map.toml` beside it, or without any for traffic experiments).
+        storage locations of `NAME.map.toml` beside it, or without stations for traffic
+        experiments).
     overrides
         (path, value) pairs such as `(["robots"], 16)`, applied to the parameters before they are
         validated. Explicit layouts accept only the keys of `ExplicitOverrides`; its `FACTORS` are

@@ -120,7 +120,7 @@ def waypoint_at(number: NDArray[np.int64], cell: int, source: str) -> int:
 
 
 def read_rows(path: Path) -> list[str]:
-    """Return the rows of a map, the top one first, a sign for each cell.
+    """Return the rows of a map as texts with one sign for each cell, the top row first.
 
     Raises
     ------

@@ -48,11 +48,11 @@ class PickStation:
     order_slots
         Maximum number of open orders.
     unit_transfer_s
-        How long one unit occupies the station.
+        Time for which one unit occupies the station, in s.
     unit_pick_s
-        How long one unit occupies the robot.
+        Time for which one unit occupies the robot, in s.
     activation
-        Rank in which stations are switched on, from 1.
+        Position in the order in which the stations of this kind are switched on, from 1.
     """
 
     kind: ClassVar[StationKind] = PICK
@@ -75,7 +75,7 @@ class ReplenishmentStation:
     capacity
         Maximum space units of bundles assigned to the station at a time.
     bundle_transfer_s
-        How long one bundle occupies both station and robot.
+        Time for which one bundle occupies both station and robot, in s.
     """
 
     kind: ClassVar[StationKind] = REPLENISHMENT
@@ -144,7 +144,7 @@ class Layout:
     Attributes
     ----------
     x_m, y_m
-        Positions of the N waypoints, shape (N,).
+        Positions of the N waypoints in m, shape (N,).
     tier
         Tier index of each waypoint, shape (N,).
     edge_start
@@ -154,21 +154,21 @@ class Layout:
     edge_target
         Heads of the directed edges, shape (M,).
     is_storage
-        Waypoints where a pod may be stored, shape (N,).
+        Whether each waypoint is a storage location, shape (N,).
     is_queue
-        Waypoints that belong to a queue zone (its exit included), shape (N,).
+        Whether each waypoint belongs to a queue zone, including the way out, shape (N,).
     pod_waypoint
         Initial waypoint of each of the P pods, shape (P,).
     pod_capacity
-        Space units of each pod, shape (P,).
+        Capacity of each pod in space units, shape (P,).
     pod_radius_m
-        Radius of the pods (the largest, if they differ).
+        Radius of the pods in m (the largest, if they differ).
     robot_waypoint
         Initial waypoint of each of the R robots, shape (R,).
     robot_heading_rad
-        Initial heading of each robot, 0 = +x, growing towards +y, shape (R,).
+        Initial heading of each robot in rad, 0 = +x, growing towards +y, shape (R,).
     robot_kind
-        Index into `robot_kinds`, shape (R,).
+        Index of the kind of each robot in `robot_kinds`, shape (R,).
     """
 
     name: str

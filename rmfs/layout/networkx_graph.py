@@ -1,4 +1,4 @@
-"""Layouts as graphs of networkx, and what its algorithms say about them."""
+"""Layouts as graphs of networkx, and measures that its algorithms compute."""
 
 from __future__ import annotations
 
@@ -54,12 +54,12 @@ class GraphMeasures:
     Attributes
     ----------
     to_station_mean_m, to_station_max_m
-        Length in m of the shortest way from a storage place to the nearest pick station, mean and
-        maximum over the places. Ways may lead through any waypoint; elevator rides count as 0 m.
-        None without pick stations or reachable places.
+        Length in m of the shortest way from a storage location to the nearest pick station, mean
+        and maximum over the storage locations. Ways may lead through any waypoint; elevator rides
+        count as 0 m. None if there is no pick station, or none that can be reached.
     bottlenecks
-        Waypoints outside of queues whose closure would cut the floor apart: the articulation points
-        of the graph without directions and queues.
+        Waypoints outside queues whose closure would divide the floor into unconnected parts: the
+        articulation points of the undirected graph without queues.
     """
 
     to_station_mean_m: float | None

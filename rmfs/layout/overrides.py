@@ -1,4 +1,4 @@
-"""Overrides for explicit layouts: those that need no generator.
+"""Overrides for explicit layouts, which are not generated from parameters.
 
 The aisles of an explicit layout cannot be lengthened, but its robots and stations can be changed.
 The keys and their meanings are those of the layout parameters. Shares of stations and robots per
@@ -33,7 +33,8 @@ _ROBOT_KEYS = (
 Share = Annotated[float, pydantic.Field(gt=0, le=1)]
 
 SEED = 0
-"""Robots of an explicit layout are drawn with a fixed seed, as in RAWSim-O."""
+"""Seed with which the initial positions of an explicit layout's robots are drawn; fixed, as in
+RAWSim-O."""
 
 
 class ExplicitOverrides(Strict):
@@ -66,10 +67,10 @@ def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source:
     Parameters
     ----------
     overrides
-        (path, value) pairs. `robots` is the number of robots per tier; with it, or with
-        `robots_per_pick_station`, robots are redrawn on road waypoints. If only a share of the
-        stations of a kind is kept, these are the ones that are switched on first; their number is
-        rounded down, to at least one.
+        (path, value) pairs. `robots` is the number of robots per tier. If it or
+        `robots_per_pick_station` is given, the positions of robots are redrawn on road waypoints.
+        If only a share of the stations of a kind is kept, those that are switched on first remain;
+        their number is rounded down, but is at least one.
     source
         Name of the file, for messages.
 

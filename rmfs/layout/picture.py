@@ -38,7 +38,7 @@ STORAGE_SIDE = 0.8
 """Side of a storage square as a share of the distance between waypoints."""
 ELEVATOR_SIDE = 0.9
 ARROW_SHARE = 0.55
-"""Length of an arrow as a share of its edge."""
+"""Length of an arrow as a share of the length of its edge."""
 LARGEST_IN = (12.0, 9.0)
 """Maximum width and height in inches of the floor plan in a saved figure."""
 LEGEND_IN = 0.45
@@ -57,7 +57,7 @@ def draw(
     """Draw a layout.
 
     Pick stations are red, replenishment stations yellow, elevators purple and robots green;
-    stations of other kinds have their own colours. Storage places are blue squares, dark where a
+    stations of other kinds have their own colours. Storage locations are blue squares, dark where a
     pod stands. Queue zones are dotted, and the hallway between storage area and stations is dashed.
     Tiers are drawn side by side.
 

@@ -25,6 +25,6 @@ Some = Annotated[int, Field(ge=1, le=100_000)]
 
 
 class Strict(Model):
-    """A table with finite numbers, written as numbers: "16" or true does not stand for 16 or 1."""
+    """A table whose numbers are finite and written as numbers: "16" and true are not accepted."""
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)

@@ -24,10 +24,10 @@ CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 def check(layout: Layout) -> list[Violation]:
     """Return all violations of a layout, those with severity "impossible" first.
 
-    The check covers: there are robots, and stations of both kinds; every endpoint (storage place,
-    station, elevator) can be reached and left, with and without load; the aisles are strongly
-    connected; queue lists are chains; every robot has a place to rest; bodies stay apart; and the
-    conditions W1-W3 of deadlock freedom.
+    The check covers: there are robots, and stations of both kinds; every endpoint (storage
+    location, station, elevator) can be reached and left, with and without load; the aisles are
+    strongly connected; queue lists are chains; every robot has a place to rest; bodies stay apart;
+    and the conditions W1-W3 of deadlock freedom.
     """
     found = [violation for checks in CHECKS for violation in checks(layout)]
     return sorted(found, key=lambda violation: violation.severity != IMPOSSIBLE)
@@ -41,7 +41,7 @@ def refuse(layout: Layout, source: str, *, allow_not_well_formed: bool = False) 
     source
         File or name of the layout, for the message.
     allow_not_well_formed
-        Accept a layout that violates the conditions of deadlock freedom only.
+        Whether to accept a layout that violates only the conditions of deadlock freedom.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Checks that robots, empty and loaded, can reach the places of their tasks.
 
-A loaded robot uses storage places only at the two ends of its path; an empty one may pass beneath
-stored pods.
+A loaded robot uses storage locations only at the two ends of its path; an empty one may pass
+beneath stored pods.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ TO_IT, FROM_IT = "no way leads to it", "no way leads away from it"
 
 
 def connection(layout: Layout) -> Iterator[Violation]:
-    """Yield endpoints that cannot be reached or left, with or without load, and stuck robots."""
+    """Yield violations: endpoints not reached or left, with or without load, and stuck robots."""
     lost = np.zeros(layout.waypoints, dtype=np.bool_)
     yield from _empty(layout, lost)
     yield from _loaded(layout, lost)

@@ -42,7 +42,8 @@ class Queue:
     of_elevator
         Whether an elevator is at its head.
     is_left
-        Whether robots never go on from there to a similar station: true of energy stations.
+        Whether a robot that leaves the queue never goes on to a similar station, as at energy
+        stations.
     """
 
     label: str
@@ -78,7 +79,7 @@ def all_queues(layout: Layout) -> list[Queue]:
 
 
 def queue_lists(layout: Layout) -> Iterator[Violation]:
-    """Yield queues that are not chains, are too short, or share places with another."""
+    """Yield violations: queues that are not chains, are too short, or share places with another."""
     owner: dict[int, str] = {}
     for queue in all_queues(layout):
         yield from _chain(layout, queue)

@@ -48,7 +48,7 @@ class Reach:
         return labels
 
     def largest(self, counted: Mask) -> Mask:
-        """Return the strongly connected component with the most counted waypoints, shape (N,)."""
+        """Return the strongly connected component with most waypoints of `counted`, shape (N,)."""
         labels = self.components()
         counted = counted & self.allowed
         if not counted.any():

@@ -28,16 +28,17 @@ if TYPE_CHECKING:
 
 TOLERANCE_M = 1e-9
 LONG = 3.0
-"""Edges longer than this multiple of the median are compared with all others individually."""
+"""Edges longer than this multiple of the median length are compared with all others one by one."""
 
 GRID_TOLERANCE = 1e-6
-"""Share by which a grid must be wider than needed; positions may be off the grid by an eighth."""
+"""Share of the grid width by which it must exceed the required distance. Positions may be off the
+grid by an eighth of this share."""
 
 
 def separation(layout: Layout) -> Iterator[Violation]:
-    """Yield pairs of waypoints or edges nearer to each other than twice the largest radius.
+    """Yield violations: waypoints or edges nearer to each other than twice the largest radius.
 
-    Edges are checked only if no waypoints are too near.
+    Edges are checked only if no two waypoints are too near to each other.
     """
     radii = [kind.radius_m for kind in layout.robot_kinds]
     if layout.pods:

@@ -51,7 +51,7 @@ def at(layout: Layout, waypoint: int) -> str:
 
 
 def waypoint_label(layout: Layout, waypoint: int) -> str:
-    """Name a waypoint: as storage place, queue place or plain waypoint."""
+    """Name a waypoint, as a storage location, a place of a queue, or a plain waypoint."""
     if layout.is_storage[waypoint]:
         kind = "storage place"
     elif layout.is_queue[waypoint]:

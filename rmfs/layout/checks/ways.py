@@ -1,9 +1,9 @@
 """Condition W1: paths between endpoints do not pass through other endpoints.
 
-Endpoints are storage places and queue places: only there may a robot stand for an unlimited time.
-Suppose that the aisles (all other waypoints) are strongly connected, every storage place is joined
-to them in both directions, every queue is entered from them, and every head leads back to them.
-Then a robot that waits until all others stand at endpoints can always proceed.
+Endpoints are storage locations and queue places: only there may a robot stand for an unlimited
+time. Suppose that the aisles (all other waypoints) are strongly connected, every storage location
+is joined to them in both directions, every queue is entered from them, and every head leads back to
+them. Then a robot that waits until all others stand at endpoints can always proceed.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def ways(layout: Layout) -> Iterator[Violation]:
-    """Yield violations of W1."""
+    """Yield the violations of condition W1."""
     tails = edge_sources(layout)
     queues = all_queues(layout)
     standing = layout.is_storage.copy()

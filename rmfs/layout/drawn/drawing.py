@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Cell = tuple[int, int]
-"""Row from the top and column from the left, from 0."""
+"""A cell: its row from the top and its column from the left, both counted from 0."""
 
 NEIGHBOURS: tuple[Cell, ...] = ((0, 1), (-1, 0), (0, -1), (1, 0))
 """Steps to the east, north, west and south."""
@@ -48,8 +48,8 @@ class Drawing:
     one_way
         For each one-way aisle cell, the only step (one of `NEIGHBOURS`) to another aisle cell.
     full, empty
-        Storage places drawn with a pod, and drawn without one. Of the storage places in neither
-        list, the share `pod_share` holds a pod.
+        Storage locations drawn with a pod, and those drawn without a pod. Of the storage locations
+        in neither list, the share `pod_share` holds a pod.
     robots
         Cells at which robots stand.
     stands
@@ -73,10 +73,10 @@ class Drawing:
     def steps(self) -> Iterator[tuple[Cell, Cell]]:
         """Yield pairs of cells such that a robot can drive from the first to the second.
 
-        Places of a queue lead to the place ahead, stations to aisles, aisles to the entrances of
-        queues. Storage places lead to all neighbours except queues, since robots without a pod
-        drive beneath pods. A one-way cell leads to aisles only in its direction, and is not
-        entered from the cell ahead.
+        A place of a queue leads to the place ahead, and a station to the aisles beside it. The
+        entrance of a queue can be reached from aisles only. Storage locations lead to all
+        neighbours except queues, since robots without a pod drive beneath pods. A one-way cell
+        leads to aisles only in its direction, and is not entered from the cell ahead.
         """
         places = {cell: (stand, rank) for stand in self.stands for rank, cell in
                   enumerate(stand.queue)}  # fmt: skip

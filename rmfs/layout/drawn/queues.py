@@ -16,7 +16,10 @@ NUMBERS = "123456789"
 
 
 class ForkError(ValueError):
-    """Several cells could be the next place of a queue; stores the last cell and its rank."""
+    """Several cells could be the next place of a queue.
+
+    Stored are the cell of the last place that is known, and its rank, counted from the station.
+    """
 
     def __init__(self, cell: Cell, rank: int) -> None:
         self.cell, self.rank = cell, rank
@@ -57,16 +60,17 @@ def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tu
 def straight_queue(drawing: Drawing, head: Cell, length: int) -> tuple[Cell, ...]:
     """Lay a straight queue over aisle cells, and mark them as places of a queue.
 
-    The direction with room for most places is chosen; ties go to the first of east, north, west and
-    south. One-way cells, cells beside storage places, cells with robots and the last way out of the
-    station are not used.
+    The direction with room for the most places is chosen; ties go to the first of east, north, west
+    and south. One-way cells, cells beside storage locations, cells with robots and the last way out
+    of the station are not used.
 
     Parameters
     ----------
     head
         Cell of the station.
     length
-        Number of places without the station; the queue is shorter if there is not enough room.
+        Number of places, not counting the station; the queue is shorter if there is not enough
+        room.
 
     Returns
     -------

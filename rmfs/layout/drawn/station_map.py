@@ -1,4 +1,4 @@
-"""Grid maps from path-finding benchmarks, with stations and storage places added."""
+"""Grid maps from path-finding benchmarks, with stations and storage locations added."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def stations_file(path: Path) -> Path:
 
 
 def read_station_map(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()) -> Layout:
-    """Read a `.map` file and the stations and storage places of the file beside it.
+    """Read a `.map` file, and the stations and storage locations in the file beside it.
 
     Parameters
     ----------

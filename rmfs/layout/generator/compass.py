@@ -8,11 +8,11 @@ from __future__ import annotations
 from enum import IntEnum
 
 Tile = tuple[int, int]
-"""(row, column)"""
+"""A tile as (row, column)."""
 
 
 class Direction(IntEnum):
-    """Direction of travel; the opposite is two further on."""
+    """Direction of travel; the number of the opposite direction is greater by 2, modulo 4."""
 
     NORTH = 0
     EAST = 1
@@ -21,7 +21,7 @@ class Direction(IntEnum):
 
     @property
     def opposite(self) -> Direction:
-        """The direction back."""
+        """The opposite direction."""
         return Direction((self + 2) % 4)
 
     def step(self, tile: Tile, tiles: int = 1) -> Tile:

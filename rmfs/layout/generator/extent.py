@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rmfs.layout.parameters import LayoutParameters
 
 BLOCK_DEPTH = 2
-"""Rows of a storage block."""
+"""Number of rows of a storage block."""
 
 RING_WIDTH = 1
 """Width of the ring road in tiles."""
@@ -96,7 +96,7 @@ def extent(parameters: LayoutParameters) -> Extent:
 
 
 def storage_places(parameters: LayoutParameters) -> int:
-    """Return the number of storage places of a tier."""
+    """Return the number of storage locations of a tier."""
     within = sum(group.within for group in parameters.other_stations.values())
     return blocks(parameters) * parameters.block_length * BLOCK_DEPTH - within
 

@@ -16,7 +16,10 @@ PODS, ROBOTS = 0, 1
 
 
 def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> NDArray[np.int32]:
-    """Draw `floor(share * places)` storage places of a tier, uniformly, without repetition."""
+    """Draw a share of the storage locations of a tier, uniformly, without repetition.
+
+    The number of locations drawn is rounded down.
+    """
     count = math.floor(share * len(places) + 1e-9)
     return _draw(places, count, seed, PODS, tier)
 
@@ -24,7 +27,7 @@ def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> 
 def draw_robots(tiles: NDArray[np.int32], count: int, seed: int, tier: int) -> NDArray[np.int32]:
     """Draw road waypoints of a tier, uniformly, without repetition.
 
-    The first n robots stand at the same places whatever the number of robots.
+    If the number of robots is increased, the robots that were there before keep their waypoints.
     """
     return _draw(tiles, count, seed, ROBOTS, tier)
 

@@ -1,7 +1,8 @@
-"""Stations within the storage area: pockets beside an aisle, each replacing a storage place.
+"""Stations within the storage area: pockets beside an aisle, each in place of a storage location.
 
-They are spread evenly over the blocks, with the kinds in turn. A pocket is entered from the aisle
-beside it, is left to the same aisle and leads nowhere else, so that no robot drives through it.
+They are spread evenly over the blocks, and the kinds of station alternate. Robots enter a pocket
+from the aisle beside it and leave it to the same aisle. It leads nowhere else, so that no robot
+drives through it.
 """
 
 from __future__ import annotations

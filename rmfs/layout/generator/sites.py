@@ -1,7 +1,8 @@
 """Where stations and elevators stand along the sides of a tier.
 
-RAWSim-O default layout: possible exits lie opposite the aisles that run inward; the stations of a
-side take the middle places: pick stations, replenishment stations, other kinds, elevators.
+RAWSim-O default layout: possible exits lie opposite the aisles that run inward. The stations of a
+side take those in the middle, in this order: pick stations, replenishment stations, other kinds,
+elevators.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Site:
 
 
 def sites(parameters: LayoutParameters, side: Direction) -> list[Site]:
-    """Return the sites of one side in ascending position."""
+    """Return the sites of one side, sorted by the position of their exits."""
     name = side.name.lower()
     groups: tuple[tuple[str, PerSide], ...] = (
         ("pick", parameters.pick_stations),

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rmfs.layout.parameters import LayoutParameters
 
 LOOP_LINES = 2
-"""Lines along a "tim" hall, next to the buffers: one with the ring road and one against it."""
+"""Number of lines along a hall of pattern "tim", beside the buffers, one in each direction."""
 
 
 class TrafficRules:
@@ -45,7 +45,7 @@ class TrafficRules:
         self._size: Extent = extent(parameters)
 
     def steps(self, tile: Tile) -> Iterator[Step]:
-        """Yield the edges that leave a tile, those into buffers excepted."""
+        """Yield the edges that leave a tile, except those into buffers."""
         for direction in self._directions(tile):
             target = direction.step(tile)
             if self._kind(target) not in (Kind.NOTHING, Kind.BUFFER):
