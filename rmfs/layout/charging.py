@@ -39,7 +39,7 @@ class RecoveryKind(StationKind):
 
     @property
     def head_w(self) -> float:
-        """Power in W that a robot gets at the station."""
+        """Charging power in W for the robot at the station; 0 if no battery is charged there."""
         return 0.0
 
     @property

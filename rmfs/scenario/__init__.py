@@ -1,7 +1,7 @@
 """Scenarios: SKUs, initial stock, demand and replenishment, independent of the warehouse.
 
-Nothing here knows the places of pods, stations or robots: a scenario defines what is requested, and
-the world responds.
+Nothing here depends on where pods, stations or robots are: a scenario defines what arrives and
+when, and the rest of the simulation determines how it is handled.
 """
 
 from rmfs.scenario.bundles import BundleContent as BundleContent

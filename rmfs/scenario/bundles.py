@@ -31,7 +31,8 @@ class BundleSource:
     return_share
         Probability that a bundle is a return of a single unit from a customer.
     path
-        Further numbers of the substream, for bundles that are numbered separately.
+        Further numbers that select the substream (see `Substreams`), for bundles with a numbering
+        of their own.
     """
 
     def __init__(

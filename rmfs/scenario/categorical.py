@@ -1,4 +1,4 @@
-"""Draws of an index with given weights, from one uniform number each."""
+"""Draws of an index with given weights; each draw takes one uniform number."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Categorical:
 
     Weights are converted to integers that sum to about `SCALE`, and a uniform number in [0, 1) to
     an integer below their sum. Because integers are compared, a draw is the same on every platform:
-    last-bit differences in a weight, between mathematics libraries, vanish in the rounding.
+    mathematics libraries may differ in the last bits of a weight, but these vanish in the rounding.
     Rounding changes no probability by more than about K / `SCALE`, and a positive weight never
     becomes zero.
 

@@ -51,18 +51,19 @@ class Cycle:
         self._gone_us = nearest_us(gone_s) % self.length_us
 
     def phase_us(self, time_us: int) -> int:
-        """Return the time within the cycle at a simulated time."""
+        """Return the time within the cycle at a simulated time, both in us."""
         return (time_us + self._gone_us) % self.length_us
 
     def times_us(self, phases_us: Sequence[int]) -> Iterator[tuple[int, int]]:
         """Yield pairs of a time from zero on at which a phase occurs and the index of the phase.
 
-        The times ascend without end.
+        The times ascend, and the sequence never ends.
 
         Parameters
         ----------
         phases_us
-            Phases of the cycle in order, each less than its length; at least one.
+            Phases (times within the cycle in us) in ascending order, each less than the length of
+            the cycle; at least one.
         """
         return _Times(list(phases_us), self.length_us, -self._gone_us)
 
@@ -91,7 +92,7 @@ class _Times:
 
 
 class Openings:
-    """Down periods, in which nothing is generated.
+    """Down periods of a scenario, in which nothing is generated.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def bundles_to_cover(scenario: Scenario, skus: SkuSet) -> list[int]:
-    """Return the SKUs of the bundles to stock first for a scenario's file of orders.
+    """Return the SKUs of the bundles to stock first so that a scenario's file of orders is covered.
 
     There is one entry per bundle. The bundles of each SKU contain at least `stock.order_cover`
     times the units ordered up to the end of the run. The largest bundles come first, because small

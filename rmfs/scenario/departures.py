@@ -1,4 +1,4 @@
-"""Departures of trucks, to which due times are postponed."""
+"""Departures of trucks: the due time of an order is postponed to the next departure."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Departures:
         self._phases_us = [nearest_us(time_s) for time_s in given.times_s]
 
     def next_us(self, time_us: int) -> int:
-        """Return the first departure that is not before a time."""
+        """Return the first departure at or after a time, both in us."""
         phase_us = self._cycle.phase_us(time_us)
         which = bisect_left(self._phases_us, phase_us)
         if which == len(self._phases_us):

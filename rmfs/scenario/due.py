@@ -1,4 +1,4 @@
-"""Due times of orders, relative to their arrival."""
+"""Due times of orders. An offset is the due time of an order minus its arrival time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class PriorityDue(Block):
     )
 
     def sampler(self) -> Callable[[float], float]:
-        """Return the function that turns a number in [0, 1) into an offset in seconds."""
+        """Return the function that turns a number in [0, 1) into a due-time offset in seconds."""
         share, urgent, ordinary = self.urgent_share, self.urgent_offset_s, self.ordinary_offset_s
         return partial(_by_priority, share, urgent, ordinary)
 
@@ -76,7 +76,7 @@ class ClassesDue(Block):
         return tuple(one.name for one in self.classes)
 
     def sampler(self) -> Callable[[float], float]:
-        """Return the function that turns a number in [0, 1) into an offset in seconds."""
+        """Return the function that turns a number in [0, 1) into a due-time offset in seconds."""
         return partial(_by_class, self._bounds(), tuple(one.offset_s for one in self.classes))
 
     def class_of(self, uniform: float) -> int:
@@ -110,7 +110,7 @@ class NormalDue(Block):
         return self
 
     def sampler(self) -> Callable[[float], float]:
-        """Return the function that turns a number in [0, 1) into an offset in seconds."""
+        """Return the function that turns a number in [0, 1) into a due-time offset in seconds."""
         quantile = self._offsets().quantile
         return partial(_in_ms, quantile)
 
@@ -119,7 +119,7 @@ class NormalDue(Block):
 
 
 class DepartureDue(Block):
-    """Orders are due when a truck departs: the first departure at least `lead_s` after arrival."""
+    """Orders are due at the first departure of a truck at least `lead_s` after their arrival."""
 
     mode: Literal["departures"] = "departures"
     times_s: Annotated[tuple[NotNegative, ...], pydantic.Strict(strict=False)] = Field(
@@ -148,7 +148,7 @@ class DepartureDue(Block):
         return value
 
     def sampler(self) -> Callable[[float], float]:
-        """Return the function that turns a number in [0, 1) into an offset in seconds."""
+        """Return a function that always returns `lead_s`; due times are postponed afterwards."""
         return partial(_always, self.lead_s)
 
 
@@ -159,7 +159,10 @@ NO_CLASS = -1
 
 
 def class_of(due: Due, uniform: float) -> int:
-    """Return the index of the class of an order with offset drawn by `uniform`, or `NO_CLASS`."""
+    """Return the index of the class of an order, given the number that its offset was drawn with.
+
+    The result is `NO_CLASS` if the scenario has no classes.
+    """
     return due.class_of(uniform) if isinstance(due, ClassesDue) else NO_CLASS
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.skus import SkuSet
 
 DRAWS_PER_LINE = 32
-"""Number of draws by popularity for a line before the SKUs that qualify are listed."""
+"""Maximum number of draws for a line; after that, one of the SKUs that qualify is drawn."""
 
 
 class OrderContent(NamedTuple):
@@ -33,12 +33,12 @@ class OrderContent(NamedTuple):
     skus, units
         SKU and number of units of each line; all SKUs are different.
     due_offset_s
-        Time from arrival to due time.
+        Time from arrival to due time, in s.
     redraws
-        Number of draws of a SKU with too few uncommitted units, at most `DRAWS_PER_LINE` for each
+        Number of draws whose SKU had too few uncommitted units, at most `DRAWS_PER_LINE` for each
         line.
     priority
-        Its class, or -1 if there are none (`orders.due.mode = "classes"`).
+        Index of its class; -1 if there are no classes (`orders.due.mode = "classes"`).
     """
 
     skus: tuple[int, ...]
@@ -68,7 +68,8 @@ class OrderSource:
     source
         Name of the scenario, for messages.
     path
-        Further numbers of the substream, for orders that are numbered separately.
+        Further numbers that select the substream (see `Substreams`), for orders with a numbering of
+        their own.
 
     Raises
     ------
@@ -105,7 +106,8 @@ class OrderSource:
             Number k of the order, 0 or greater. Each is drawn only once: after None, the next
             attempt uses k + 1.
         uncommitted
-            Units of each SKU stored and not promised to an order, shape (K,).
+            Units of each SKU that are stored and not needed for orders that have arrived, shape
+            (K,).
 
         Returns
         -------

@@ -48,7 +48,8 @@ class UnitTimes:
         Parameters
         ----------
         station_s
-            Time of the station in the layout, which is the mean, except of measured times.
+            Time of a unit in s according to the layout of the station. It is the mean of the
+            distribution, except if times are measured.
         """
         given = self._given
         if isinstance(given, GammaTime):
@@ -75,8 +76,9 @@ class UnitTimes:
 def learned(given: Learning | None, units: float) -> float:
     """Return the factor on the time of the next unit after a number of units in this run.
 
-    Unit n takes T1 (M + (1 - M) n**-b) with b = -log2(rate): Wright (1936) for M = 0, De Jong
-    (1957) with the incompressible share M. The factor is relative to unit number `standard_units`.
+    Unit n takes the time T1 (M + (1 - M) n**-b), where T1 is the time of the first unit and b =
+    -log2(rate): Wright (1936) for M = 0, De Jong (1957) with the incompressible share M. The factor
+    is this time divided by that of unit number `standard_units`.
     """
     if given is None:
         return 1.0

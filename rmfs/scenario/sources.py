@@ -52,8 +52,8 @@ def order_stream(scenario: Scenario, skus: SkuSet) -> OrderStream:
     Raises
     ------
     InputError
-        If the file is invalid, its digest differs, or its orders have dates and none of them lies
-        within the run.
+        If the file is invalid, its digest differs from the one in the scenario, or its orders have
+        dates and none of them lies within the run.
     """
     config = scenario.demand
     assert isinstance(config, StreamDemand)
@@ -81,7 +81,8 @@ def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> Bundl
     Raises
     ------
     InputError
-        If the file is invalid, a bundle fits into no pod, or the digest differs.
+        If the file is invalid, a bundle fits into no pod, or the digest differs from the one in the
+        scenario.
     """
     config = scenario.replenishment
     assert isinstance(config, StreamReplenishment)

@@ -31,7 +31,8 @@ class WordSource:
     seed
         The run's seed.
     path
-        Further numbers of the substream, for orders that are numbered separately.
+        Further numbers that select the substream (see `Substreams`), for orders with a numbering of
+        their own.
     """
 
     def __init__(

@@ -59,7 +59,7 @@ class Queue:
 
 
 def all_queues(layout: Layout) -> list[Queue]:
-    """Return the queues of all stations and elevators; an empty list counts as its head alone."""
+    """Return the queue of each station and elevator; an empty list becomes a queue of its head."""
     queues = [
         Queue(
             station_label(layout, s),

@@ -32,7 +32,7 @@ class Converted(NamedTuple):
     first, last
         Times of the first and the last order, in ISO 8601, or in s if the data set has no dates.
     left_out
-        Number of omitted orders or lines, by a text that describes them.
+        Number of omitted orders or lines for each reason, which is a text.
     """
 
     orders: int
@@ -61,11 +61,12 @@ def convert(
     layout
         A name of `LAYOUTS`.
     paths
-        Its files, in the order given by the layout; further files are like the last one.
+        Its files, in the order of `Layout.files`; further files have the same columns as the last
+        one.
     out
         The .csv file to write.
     begin, end
-        Use orders from `begin` on and before `end`. Default: all.
+        Times: orders from `begin` on and before `end` are used. Default: all orders.
     share
         Probability with which each of these orders is used.
     seed

@@ -38,7 +38,7 @@ class Layout(NamedTuple):
 
 
 def instacart(paths: Sequence[Path], orders: Orders) -> None:
-    """Read orders with weekday and hour, which all fall within one week.
+    """Read orders of which only weekday and hour are known; all are put into one week.
 
     Orders of the same weekday and hour are spread evenly over this hour. Every line is one unit.
     """

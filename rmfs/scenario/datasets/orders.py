@@ -48,7 +48,7 @@ class Orders:
     by_name
         Orders by name; None for those not used.
     left_out
-        Number of omitted orders or lines, by a text that describes them.
+        Number of omitted orders or lines for each reason, which is a text.
     """
 
     takes: Callable[[datetime | float], bool]
@@ -64,7 +64,7 @@ class Orders:
         return self.by_name[name]
 
     def taken(self) -> list[tuple[str, Order]]:
-        """Return (name, order) for all used orders with lines, by time, then in order of the file.
+        """Return (name, order) for all used orders with lines, sorted by time, then as in the file.
 
         Used orders without a line are counted in `left_out`.
         """

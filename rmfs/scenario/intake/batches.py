@@ -23,8 +23,8 @@ class Batch(NamedTuple):
     time_s
         Time within the cycle, in s.
     lacks
-        Function of the state and of the number of arrivals in the batch so far; returns whether
-        more are needed.
+        Function of the state and of the number of arrivals in the batch so far. It returns whether
+        the batch needs more.
     """
 
     time_s: float
@@ -32,7 +32,7 @@ class Batch(NamedTuple):
 
 
 def add(time_s: float, number: int) -> Batch:
-    """Return a batch of a given size, regardless of the state."""
+    """Return a batch of a given number of arrivals, which does not depend on the state."""
     return Batch(time_s, partial(_fewer_than, number))
 
 
@@ -48,10 +48,10 @@ class Batches(Generic[T]):
     batches
         At least one batch.
     cycle_s, gone_s
-        Length of the cycle, and its advance at time zero.
+        Length of the cycle, and time by which it has advanced at time zero, in s.
     make
-        Function of k, the time and the state that creates the k-th order or bundle, counted over
-        all batches. None, if nothing can be created, ends the batch.
+        Function of k, the time (us) and the state that creates the k-th order or bundle, counted
+        over all batches. If it returns None, because nothing can be created, the batch ends.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class Batches(Generic[T]):
         self._come = 0
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next order or bundle of batches that are due; None if these are complete."""
+        """Return the next order or bundle of a batch that is due; None if all such are complete."""
         while self.next_us <= now_us:
             if self._lacks(state, self._come):
                 thing = self._make(self._ordinal, now_us, state)

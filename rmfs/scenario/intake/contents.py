@@ -38,12 +38,13 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     """Return the function that draws the contents of the k-th order.
 
     Only orders of a constant backlog depend on stock; all others are the same whatever happens in a
-    run. Orders that are words never depend on stock.
+    run. Orders that are words (`WordOrders`) never depend on stock.
 
     Parameters
     ----------
     path
-        Further numbers of the substream, for orders that are numbered separately.
+        Further numbers that select the substream (see `Substreams`), for orders with a numbering of
+        their own.
 
     Raises
     ------

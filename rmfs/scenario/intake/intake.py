@@ -27,11 +27,11 @@ class OrderArrival(NamedTuple):
     due_us
         Due time.
     redraws
-        Number of draws of a SKU with too few uncommitted units.
+        Number of draws whose SKU had too few uncommitted units.
     in_file
         Its position among the orders of a file, or -1.
     priority
-        Its class, or -1 without classes.
+        Index of its class; -1 if there are no classes.
     """
 
     time_us: int

@@ -54,8 +54,8 @@ class NeededBundles:
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
         """Return a bundle of the SKU with the fewest units left, if this SKU is short.
 
-        None is returned also in a down period, during the pause after a bundle that would exceed
-        the load limit, and while the maximum number of bundles waits.
+        The result is also None in a down period, during the pause after a bundle that would have
+        exceeded the load limit, and while the maximum number of bundles waits.
         """
         if not self._rest.ends(now_us) or state.waiting_bundles >= self._config.bundles:
             return None

@@ -22,7 +22,7 @@ MOST_PER_H = 1e8
 
 
 class Rate(Protocol):
-    """An arrival rate per h.
+    """An arrival rate, in arrivals per h, that may change over time.
 
     Attributes
     ----------
@@ -33,10 +33,10 @@ class Rate(Protocol):
     peak_per_h: float
 
     def per_h(self, time_us: int) -> float:
-        """Return the rate at a time."""
+        """Return the rate at a time in us."""
 
     def redraw(self, now_us: int) -> None:
-        """Redraw all random changes after a time."""
+        """Redraw all random changes of the rate after a time."""
 
 
 def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: int) -> Rate:

@@ -28,7 +28,7 @@ class Timed(Generic[T]):
     make
         Creates the arrival of a candidate.
     share
-        Share of active stations to which the rate is tied, if it is.
+        Function that returns the share of active stations; None if the rate is not tied to them.
     """
 
     def __init__(
@@ -84,7 +84,7 @@ def _at_zero(ordinal: int) -> Candidate:
 
 
 def share_of(tied_to: TiedTo) -> Callable[[State], float] | None:
-    """Return the function that reads the share of active stations, or None for "nothing"."""
+    """Return the function that reads the share of active stations; None for a rate tied to none."""
     if tied_to == "pick-stations":
         return attrgetter("active_pick_share")
     if tied_to == "replenishment-stations":

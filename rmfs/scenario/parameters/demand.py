@@ -25,7 +25,7 @@ class _Demand(Block):
 class BacklogDemand(_Demand):
     """Keeps a constant number of orders waiting; only SKUs in stock are ordered.
 
-    Stock does not limit orders that are words.
+    Stock does not limit orders that are words (`WordOrders`).
     """
 
     mode: Literal["backlog"] = Field("backlog", description="a constant number of orders waits")

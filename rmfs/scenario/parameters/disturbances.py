@@ -30,7 +30,7 @@ class SlowRobots(_Repeated):
 
 
 class Closures(_Repeated):
-    """An aisle waypoint that no place depends on is closed for a while."""
+    """An aisle waypoint is closed for a while; this cuts off no storage location or station."""
 
 
 class ChargerFailures(_Repeated):

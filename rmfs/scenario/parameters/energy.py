@@ -16,7 +16,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "kiva-like": {"robot_kg": 145.0, "pod_kg": 120.0},
     "light": {"robot_kg": 60.0, "pod_kg": 40.0, "standby_w": 5.0, "standby_loaded_w": 8.0},
 }
-"""What each preset changes in the default values; docs/energy.md names the sources."""
+"""Values that replace the defaults in each preset; docs/energy.md names the sources."""
 
 
 class Battery(Block):

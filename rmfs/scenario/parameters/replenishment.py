@@ -70,7 +70,10 @@ class PoissonReplenishment(_Drawn):
 
 
 class NeededReplenishment(_Replenishment):
-    """Bundles of SKUs with too few units, in stock or on their way, left for further orders."""
+    """Bundles arrive for SKUs of which too few units are left for further orders.
+
+    The units left are those in stock and on their way, minus those ordered.
+    """
 
     mode: Literal["needed"] = Field(
         "needed", description="bundles of SKUs that waiting orders lack"

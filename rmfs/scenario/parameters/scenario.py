@@ -32,7 +32,7 @@ class Stock(Block):
 
 
 class Scenario(Block):
-    """Everything that a run is asked to do, apart from the warehouse and its controllers."""
+    """All inputs of a run except its layout and controllers: SKUs, stock, demand and so on."""
 
     format: Literal["rmfs-scenario/1"] = Field(description="version of this format")
     name: str = Field(min_length=1, description="name shown in results")

@@ -72,8 +72,8 @@ class GeneratedSkus(_Sizes):
 class SkuFile(_Sizes):
     """SKUs from a file.
 
-    Popularity and affinity come from the file. Space and bundle sizes do too, unless the file has
-    none: then they are drawn as specified here.
+    Popularity and affinity come from the file. Space and bundle sizes also come from the file if it
+    contains them; otherwise they are drawn as specified here.
     """
 
     file: SkuSetFile = Field(

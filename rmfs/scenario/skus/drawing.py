@@ -57,8 +57,8 @@ def draw_bundle_units(distribution: Counts, seed: int, count: int) -> NDArray[np
 def draw_affinity(config: GeneratedAffinity, seed: int, count: int) -> Affinity:
     """Draw pairs of SKUs; the weight of a pair is sqrt(2) minus the distance of its SKUs.
 
-    Each SKU is a random point in the unit square, so that two SKUs that go well with a third go
-    well with each other. A weight counts in both directions.
+    Each SKU is a random point in the unit square, so that two SKUs that are often ordered with a
+    third are often ordered with each other. A weight counts in both directions.
 
     Parameters
     ----------

@@ -30,8 +30,8 @@ def draw_popularity(skus: SkuSet, ax: Axes, *, cumulative: bool = False) -> None
     ax
         Axes to draw on.
     cumulative
-        Draw cumulative shares, from the most popular SKU on; a thin line shows the case of equal
-        popularity.
+        Whether to draw cumulative shares, from the most popular SKU on. A thin line then shows the
+        case of equal popularity.
     """
     shares = np.sort(skus.by_popularity.probabilities)[::-1]
     rank = np.arange(1, len(shares) + 1) / len(shares)

@@ -37,8 +37,8 @@ def read_orders(
         Date and time of time zero. Default: midnight before the first order, if times are in ISO
         8601.
     classes
-        Names of the classes of orders, of which a column priority names one for each order. The
-        column may be missing, or empty for some orders.
+        Names of the classes of orders. If there are any, a column priority contains the name of the
+        class of each order; it may be missing, or empty for some orders.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Affinity of SKUs, measured by how much more often pairs recur than by chance.
+"""Affinity of SKUs, measured by how much more often pairs recur than they would by chance.
 
 In the generator, the SKU of a further line is drawn with some probability from those that are
 ordered together with the SKU of the previous line. This probability is fitted by simulating the
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.skus import SkuSet
 
     Drawn = Callable[[float, int], SkuSet]
-    """Makes SKUs of a share of affinity and a seed."""
+    """Function that creates SKUs from a share of affinity and a seed."""
 
 LEAST_PAIRS = 200
 GROUPS = 20
@@ -139,7 +139,7 @@ def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Draw
 
 
 def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
-    """Return `skus` with a share of affinity, each SKU paired with two others on average."""
+    """Return `skus` with a share of affinity; on average, each SKU is paired with two others."""
     pairs = min(skus.count, skus.count * (skus.count - 1) // 2)
     given = GeneratedAffinity(share=round(share, 6), pairs=pairs, default_weight=0.0)
     return skus.model_copy(update={"affinity": given})

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MOST_WORK = 1e9
 MOST_ORDERS = 50_000
-"""Limit of the simulated orders of the twin; at least one cycle is simulated in any case."""
+"""Maximum number of simulated orders of the twin; at least one cycle is always simulated."""
 
 
 def agreements(

@@ -52,12 +52,12 @@ class Agreement(NamedTuple):
 
 
 def shares(name: str, counts: NDArray[np.int64]) -> list[Estimate]:
-    """Return the shares of 1, 2, ... with Wilson's intervals.
+    """Return the shares of the values 1, 2, ... with Wilson's score intervals.
 
     Parameters
     ----------
     counts
-        Number of occurrences of each, shape (n,).
+        Number of occurrences of each value, shape (n,).
     """
     total = int(counts.sum())
     z = stats.norm.ppf(0.5 + LEVEL / 2)

@@ -32,9 +32,10 @@ if TYPE_CHECKING:
 DAY_H = 24
 WEEK_H = 168
 MOST_UNSEEN = 20
-"""Maximum ratio of all SKUs, seen or not, to those seen; above it gamma weights mean nothing."""
+"""Maximum ratio of the estimated total number of SKUs to the number of SKUs in the file; above it,
+gamma weights have no meaning."""
 MOST_LISTED = 200
-"""Maximum number of lines of an order, or units of a line; larger ones count as this."""
+"""Maximum number of lines of an order, or units of a line; larger numbers count as this one."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 LEAST_SKUS = 10
 LEAST_IN_BIN = 5.0
 FACTORS = (0.03, 0.1, 0.3, 1.0)
-"""Factors on the mean of the positive counts, at which the search for the overall mean starts."""
+"""Factors on the mean of the positive counts; the search for the overall mean starts from these."""
 
 
 class Popularity(NamedTuple):
