@@ -55,7 +55,7 @@ class Cycle:
         return (time_us + self._gone_us) % self.length_us
 
     def times_us(self, phases_us: Sequence[int]) -> Iterator[tuple[int, int]]:
-        """Yield pairs of a time from zero on at which a phase occurs and the index of the phase.
+        """Yield the times in us, 0 or later, at which a phase occurs, with the index of the phase.
 
         The times ascend, and the sequence never ends.
 
@@ -116,11 +116,11 @@ class Openings:
         self.always = not self._borders
 
     def is_open(self, time_us: int) -> bool:
-        """Return whether a time is outside all down periods, which exclude their ends."""
+        """Return whether a time in us is outside all down periods. A period excludes its end."""
         return self.open_from_us(time_us) == time_us
 
     def open_from_us(self, time_us: int) -> int:
-        """Return the first time, not before a given one, that is outside all down periods."""
+        """Return the first time in us outside all down periods that is not before a given time."""
         while self._borders:
             phase_us = self._cycle.phase_us(time_us)
             passed = bisect_right(self._borders, phase_us)

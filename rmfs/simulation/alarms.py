@@ -1,4 +1,4 @@
-"""Times at which controllers want to be asked, as they state them by `next_event_s`."""
+"""Times at which controllers want to be called; controllers state them by `next_event_s`."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ class Alarms:
     due
         Called with each decision problem whose controller is due.
     outside
-        Decision problems decided outside; their rules still specify times.
+        Decision problems decided outside the simulation; their rules still specify times.
 
     Attributes
     ----------
     punctual
         Problems whose controllers specify times.
     overdue
-        Problems whose controllers are due and have not been asked yet.
+        Problems whose controllers are due and have not been called yet.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Alarms:
         )
 
     def asked(self, problem: Problem) -> None:
-        """Update after a controller was asked: it may now specify another time."""
+        """Update after a controller was called: it may now specify another time."""
         if self.overdue:
             self.overdue.discard(problem)
         if problem in self.punctual:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class ArrivalProcess:
     """Asks the scenario for arrivals whenever `top_up` is called, and adds them to the world.
 
-    It also represents the state of the run to the scenario (`rmfs.scenario.State`).
+    It implements `rmfs.scenario.State`, from which the scenario reads the state of the run.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ class PhaseConsult:
         return self._number(asked, pps, lambda: pps.next_station(robot, stations))
 
     def place_for(self, robot: Robot) -> int:
-        """Ask PSA for a storage place (waypoint) for the pod of a robot; -1 for none."""
+        """Ask PSA for a storage location (waypoint) for the pod of a robot; -1 for none."""
         psa: PodStorageAssignment[Any] = self._controllers.consulted(Problem.PSA)
         asked = (Problem.PSA, "place", robot.index, ())
         return self._number(asked, psa, lambda: psa.place(robot))
@@ -100,7 +100,7 @@ class PhaseConsult:
 
 
 class OutsideConsult(PhaseConsult):
-    """Passes TA's questions to the outside if their problem is decided there.
+    """Passes TA's questions on if their problem is decided outside the simulation.
 
     All other questions are answered as by `PhaseConsult`. The methods that ask for a pod, station,
     place or move raise `Awaits` if the outside must answer first.
@@ -127,7 +127,7 @@ class OutsideConsult(PhaseConsult):
         )
 
     def place_for(self, robot: Robot) -> int:
-        """Ask for a storage place (waypoint) for the pod of a robot; -1 for none."""
+        """Ask for a storage location (waypoint) for the pod of a robot; -1 for none."""
         question = Question(Problem.PSA, "place", robot.index)
         return self._asked(question, lambda: super(OutsideConsult, self).place_for(robot))
 

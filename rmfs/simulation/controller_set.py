@@ -1,4 +1,4 @@
-"""The controllers of a run, when they are asked, and the events they are notified of."""
+"""The controllers of a run: when they are called, and which events they are notified of."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class ControllerSet:
     installed
         The controller of each problem; the same mapping throughout the run.
     calls
-        For each trigger, the problems whose controllers are asked after it.
+        For each trigger, the problems whose controllers are called after it.
     listeners
         For each trigger, methods that are called immediately.
     """
@@ -66,8 +66,8 @@ class ControllerSet:
     def consulted(self, problem: Problem) -> Any:
         """Return the controller that answers TA's questions about a problem.
 
-        If a dummy is installed, this is the joint controller that decides in its place, which must
-        then implement the methods of the problem's protocol as well.
+        If a dummy is installed for the problem, this is the joint controller that decides in its
+        place. A joint controller must also implement the methods of the problem's protocol.
         """
         return self._consulted[problem]
 

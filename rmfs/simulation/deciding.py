@@ -35,7 +35,7 @@ LONGEST = 200
 
 
 class Deciding:
-    """Asks controllers, applies their decisions, and keeps statistics.
+    """Asks controllers for decisions, applies these, and keeps statistics.
 
     Attributes
     ----------
@@ -74,14 +74,15 @@ class Deciding:
     def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:
         """Apply decisions one by one, and measure the time spent on making them.
 
-        Calls can be nested: an answer may arrive while the controller that asked still decides.
+        Calls can be nested: an optimiser may answer while the controller that asked it still
+        decides.
 
         Parameters
         ----------
         given
-            The decisions, made one after another as they are taken from it.
+            Iterable of decisions; each is made when it is taken.
         answer
-            The call to an optimiser whose answer the decisions follow from, if any.
+            The call to an optimiser on whose answer the decisions are based, if any.
 
         Raises
         ------
@@ -147,12 +148,13 @@ class Deciding:
         state: RuleState,
         answer: Call | None = None,
     ) -> None:
-        """Ask a rule that may be interrupted by questions to the outside, otherwise like `ask`.
+        """Do the same as `ask` for a rule that may be interrupted by questions decided outside.
 
         Parameters
         ----------
         decide
-            Function that asks for decisions, or passes on the answer of an optimiser.
+            Function that asks the rule for decisions, or passes the answer of an optimiser on to
+            it.
         outside
             Holds the answers given so far.
         state
@@ -163,8 +165,8 @@ class Deciding:
         Raises
         ------
         Awaits
-            If a question must be answered outside first. The rule is then in its state after its
-            last decision, and must be asked again.
+            If a question must first be answered outside the simulation. The rule is then in its
+            state after its last decision, and must be asked again.
         """
         controller = self._controllers[problem]
         which = -1 if answer is None else answer.number
@@ -272,7 +274,7 @@ class Deciding:
             self.decided(problem, call)
 
     def decided(self, problem: Problem, call: Call | None) -> None:
-        """Count a decision of a controller that asks optimisers: of `call`, or by its own rule."""
+        """Count a decision of a controller with optimisers, for `call`, or for its rule if None."""
         if call is None:
             self._events.rule_decided(problem.value, self._world.now_s)
         else:
@@ -288,8 +290,8 @@ class Deciding:
         count
             Number of decisions made in it.
         by_rule
-            Number of these that do not follow from a solution; the others are counted with the
-            question to the optimiser.
+            Number of these that are not based on the answer of an optimiser; the others are counted
+            with the question to the optimiser.
         """
         now_s, statistics = self._world.now_s, self.statistics[problem]
         statistics.record(wall_ns, count, now_s)

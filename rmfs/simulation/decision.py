@@ -24,7 +24,7 @@ class ImpossibleError(ValueError):
 
 
 class Asking(Protocol):
-    """The parts of a simulation that a decision needs."""
+    """The parts of a simulation that a `Decision` needs."""
 
     @property
     def view(self) -> View:
@@ -48,12 +48,12 @@ class Asking(Protocol):
 
 
 class Decision:
-    """One question to the outside, with methods to answer it.
+    """One question to be decided outside the simulation, with methods to answer it.
 
-    POA, ROA, RPS, SA, MM, CA and TA are asked in turns: call `answer` with one decision after
-    another, of the kinds in `rmfs.control.decisions`, each applied immediately, until `decline`
-    ends the turn. PPS, PSA and repositioning are asked by TA, one thing at a time: a pod, a
-    station, a place, or a `Move`.
+    In POA, ROA, RPS, SA, MM, CA and TA, a question is a turn: call `answer` with one decision after
+    another (see `rmfs.control.decisions`), each of which is applied immediately, and then `decline`
+    to end the turn. In PPS, PSA and repositioning, TA asks for one thing at a time: a pod, a
+    station, a storage location, or a `Move`.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class Decision:
         `turn`, or a question of TA: `pick pod`, `replenishment pod`, `next station`, `place`,
         `move`.
     view
-        The world as controllers see it: to be read, never to be changed.
+        The world as controllers see it. It must not be changed.
     """
 
     def __init__(self, question: Question, simulation: Asking) -> None:
@@ -161,7 +161,7 @@ class Decision:
             self._reply(None if self.kind == "move" else -1, decided=False)
 
     def advice(self) -> Any:
-        """Return what the installed rule of the problem would answer; None to decline.
+        """Return what the installed rule of the problem would answer; None if it would decline.
 
         Rules assume that their decisions are carried out: follow the advice throughout, or not at
         all. The rule draws random numbers as if it had decided.

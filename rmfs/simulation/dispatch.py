@@ -33,9 +33,9 @@ _DRIVE, _LIFT, _SET_DOWN, _STATION = (
 class Dispatch:
     """Starts tasks and tracks robots.
 
-    A robot is sent to a storage place only if no other robot keeps it. If a robot without work
-    stands beneath a pod that is needed, it is sent elsewhere first; the robot that fetches the pod
-    starts when the place has been left.
+    A robot is sent to a storage location only if no other robot stands there or is on its way
+    there. If a robot without work stands beneath a pod that is needed, it is sent elsewhere first;
+    the robot that fetches the pod starts when the place has been left.
     """
 
     def __init__(

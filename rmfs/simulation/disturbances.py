@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.traffic import Traffic
 
 AGAIN_US = 1_000_000
-"""Delay in us before retrying to start or end a disturbance that cannot start or end now."""
+"""Delay in us before another attempt to start or end a disturbance that is impossible now."""
 
 TRIES = 20
 """Number of waypoints tried when looking for one that can be closed."""

@@ -1,4 +1,4 @@
-"""Decisions of TA from outside that leave a choice to PPS, PSA or repositioning."""
+"""Decisions of TA made outside the simulation that leave a choice to PPS, PSA or repositioning."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ class Snapshot(Generic[K]):
     along
         Copied together with the simulation; may refer to parts of it.
     spectators
-        Observers without influence on the run: copies have empty ones instead.
+        Observers without influence on the run; copies have observers that do nothing instead.
     """
 
     def __init__(self, simulation: K, along: Any, spectators: Sequence[Observer]) -> None:

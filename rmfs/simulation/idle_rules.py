@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""Share of the run, at its end, in which a rule that is reported has decided nothing."""
+"""A rule is reported if it decided nothing in at least this share of the run, at its end."""
 LEAST_S = 300.0
-"""Shortest simulated time without a decision, in s, for which a rule is reported."""
+"""Minimum length in s of the time without a decision for which a rule is reported."""
 
 
 class IdleRuleWarning(UserWarning):
@@ -37,7 +37,7 @@ def idle_rules(
     end_s
         End of the run, in simulated seconds since its start.
     outside
-        Decision problems decided outside, whose rules are exempt.
+        Decision problems decided outside the simulation, whose rules are exempt.
 
     Returns
     -------

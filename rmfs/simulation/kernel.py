@@ -65,8 +65,9 @@ class Kernel(Loop):
     observers
         Notified of everything that happens.
     outside
-        Decision problems that `step` returns for decisions outside, such as `["poa", "pps"]`. Their
-        controllers stay installed: they determine the times of the questions, and give advice.
+        Decision problems that are decided outside the simulation, such as `["poa", "pps"]`; `step`
+        returns their questions. Their controllers stay installed: they determine the times of the
+        questions, and give advice.
     pacing
         How simulated time accounts for the computation of optimisers.
     traffic
@@ -253,7 +254,7 @@ class Kernel(Loop):
         self._unsettled = True
 
     def redraw(self) -> None:
-        """Redraw arrivals and disturbances to come, after all random streams have been replaced.
+        """Redraw future arrivals and disturbances, after all random streams have been replaced.
 
         Raises
         ------

@@ -52,7 +52,7 @@ class Copies(Protocol):
 
 
 class Forks:
-    """The look-ahead given to controllers.
+    """Look-ahead for controllers: prepares trials of decisions in copies of the run.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ class Earnings(Observer):
     def value(self, world: World) -> float:
         """Return the value, less the cost of distance and of the time for which orders are overdue.
 
-        An order that is not completed is overdue up to now.
+        For an order that is not completed, this time is counted up to now.
         """
         goal, value = self._goal, self._value
         if goal.overdue_s:

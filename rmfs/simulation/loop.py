@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
     Limit = Callable[[int], int]
-    """Given the present time in us, returns the time in us up to which to simulate; may block
-    first."""
+    """Function of the present time in us. It returns the time in us up to which to simulate, and
+    may block first."""
 
 SAMPLE_S = 60.0
 """Simulated time between two samples, in s."""
@@ -106,7 +106,7 @@ class Loop:
         Raises
         ------
         RuntimeError
-            If a decision must be made outside; use `step` instead.
+            If a decision must be made outside the simulation; use `step` instead.
         StalledError
             If no robot moves any more (only possible in a layout that is not well-formed).
         RuleError
@@ -143,18 +143,18 @@ class Loop:
             self.optimisers.end()
 
     def run_until(self, time_s: float) -> Decision | None:
-        """Simulate up to a time, including everything at that time, but not beyond the end.
+        """Simulate up to a time in s, including everything at that time, but not beyond the end.
 
         Returns
         -------
         Decision or None
-            The first decision to be made outside up to then, where the simulation stops; None if
-            there is none.
+            The first decision up to then that must be made outside the simulation, which stops
+            there; None if there is none.
         """
         return self._go_on(min(us_at(time_s), self._end_us))
 
     def step(self) -> Decision | None:
-        """Simulate up to the next decision that is made outside.
+        """Simulate up to the next decision that is made outside the simulation.
 
         Returns
         -------
@@ -232,7 +232,7 @@ class Loop:
 
     @property
     def decision(self) -> Decision | None:
-        """The decision waiting to be made outside; None if there is none."""
+        """The decision that waits to be made outside the simulation; None if there is none."""
         question = self.phase.outside.pending
         return None if question is None else Decision(question, self)
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class Answers(Protocol):
-    """Receives answers."""
+    """Receiver of the answers of optimisers."""
 
     def tell(self, call: Call) -> None:
         """Pass the answer to the controller that asked, immediately."""

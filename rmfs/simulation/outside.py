@@ -1,11 +1,11 @@
-"""Decisions made outside: pending questions, and how a run waits for the answers.
+"""Decisions made outside the simulation: pending questions, and how a run waits for answers.
 
 A waiting run has no live generator of a controller: everything it needs to continue is data, so
-that it can be copied and saved while it waits. A problem that the phase itself asks about is a
-*turn*: decisions are made one by one until the outside declines. A question that a TA rule asks in
-the middle of its work interrupts the rule (`Awaits`). When the answer arrives, the rule is restored
-to its state after its last decision, asked again, and given the answers since then in order. The
-same applies to a rule that is carrying out the answer of an optimiser: it continues with the rest.
+that it can be copied and saved while it waits. A question of the decision phase itself is a *turn*:
+decisions are made one by one until one is declined. A question that a TA rule asks in the middle of
+its work interrupts the rule (`Awaits`). When the answer arrives, the rule is restored to its state
+after its last decision, asked again, and given the answers since then in order. The same applies to
+a rule that is carrying out the answer of an optimiser: it continues with the rest.
 """
 
 from __future__ import annotations
@@ -32,7 +32,8 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
     Raises
     ------
     InputError
-        If there is no such problem, or it cannot be decided outside with these controllers.
+        If there is no such problem, or it cannot be decided outside the simulation with these
+        controllers.
     """
     valid = [str(problem) for problem in Problem if problem is not Problem.PP]
     for name in names:
@@ -62,7 +63,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
 
 
 class Awaits(BaseException):
-    """A question to the outside came up in the middle of a controller's work."""
+    """A question must be answered outside the simulation, in the middle of a controller's work."""
 
     def __init__(self, question: Question) -> None:
         super().__init__(question)
@@ -71,7 +72,7 @@ class Awaits(BaseException):
 
 @dataclass
 class Outside:
-    """The problems decided outside, and what is pending.
+    """The problems decided outside the simulation, and the pending question.
 
     Attributes
     ----------
@@ -90,7 +91,8 @@ class Outside:
     refused
         Decisions of the current turn that failed because no pod or place was found.
     advisor, advised
-        The decisions that the installed rule would make in the current turn, and its last advice.
+        Iterator over the decisions that the installed rule would make in the current turn, and its
+        last advice.
     """
 
     problems: frozenset[Problem] = frozenset()
@@ -117,7 +119,7 @@ class Outside:
         self.taken = 0
 
     def begin_attempt(self) -> None:
-        """Forget all answers, as a TA rule is asked anew or one of its decisions was applied."""
+        """Forget all answers, since a TA rule is asked anew or one of its decisions was applied."""
         if self.given:
             self.given.clear()
         self.taken = 0
@@ -134,7 +136,7 @@ class Outside:
         Raises
         ------
         Awaits
-            If the question must be answered outside first.
+            If the question must first be answered outside the simulation.
         """
         if self.knows(question):
             answer = self.given[self.taken][1]

@@ -1,4 +1,4 @@
-"""The decision phase: after each instant, controllers are asked until everything is settled."""
+"""The decision phase: after each instant, controllers are called until no step is due."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class DecisionPhase:
     Attributes
     ----------
     outside
-        The problems decided outside, and what is pending.
+        The problems decided outside the simulation, and the pending question.
     choices
         The currently installed controllers, by decision problem.
     """
@@ -98,7 +98,7 @@ class DecisionPhase:
         self._steps = self._what_is_done()
 
     def exchange(self, choice: Choice) -> None:
-        """Install another controller for a problem, which is then asked at this instant.
+        """Install another controller for a problem; it is asked for decisions at this instant.
 
         Commitments of the previous controller are part of the world and remain: bundles on pods and
         at stations, orders and robots at work. What only the previous controller could continue is
@@ -322,15 +322,15 @@ class DecisionPhase:
         Raises
         ------
         Awaits
-            If one of these is decided outside as well; the decision is applied once that question
-            has been answered.
+            If one of these is decided outside the simulation as well; the decision is applied once
+            that question has been answered.
         """
         self.outside.doing = decision
         self.outside.begin_attempt()
         self.do_outside()
 
     def do_outside(self) -> None:
-        """Apply the decision of the outside that has not been applied yet."""
+        """Apply the decision made outside the simulation that has not been applied yet."""
         outside, decision = self.outside, self.outside.doing
         outside.taken = 0
         match decision:
@@ -378,7 +378,7 @@ class DecisionPhase:
         return rule.move(robot)
 
     def end_turn(self, problem: Problem) -> None:
-        """End a turn of the outside; everything due before its problem has now been asked."""
+        """End a turn in which decisions were made outside; the decision phase can then continue."""
         self._interrupted = 0
         self.outside.refused.clear()
         self._alarms.asked(problem)

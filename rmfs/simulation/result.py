@@ -134,7 +134,7 @@ class Run(Results):
         return self._ended.tables[name]
 
     def check(self) -> CheckReport:
-        """Verify with the independent checker that the motion is safe; fills `collisions`.
+        """Verify with the independent checker that the motion is safe, and set `collisions`.
 
         Raises
         ------

@@ -24,7 +24,7 @@ _KNOWN: dict[type, bool] = {}
 
 
 class Kept(NamedTuple):
-    """A saved state of a controller: pickled state, its references, and calls with their counts."""
+    """A saved state of a controller: pickled data, objects they refer to, and counts of calls."""
 
     content: bytes
     shared: list[object]
@@ -36,7 +36,7 @@ class RuleState:
 
     Robots, orders, pods and everything else in the world are stored by reference, not copied. So
     are the view, the parameters, and trackers, which follow events and do not change when a rule
-    decides. For a call, the rule's counts and its progress are saved.
+    decides. Of a call to an optimiser, only the rule's counts and its progress are saved.
     """
 
     def keep(self, controller: Controller[Any], answer: Call | None) -> Kept:

@@ -142,7 +142,8 @@ class Simulation(Kernel):
 streams, remark, allow_not_well_formed, traffic_maker
         As for `simulate`.
     outside
-        Decision problems decided outside through `step`, such as `["poa", "pps"]`.
+        Decision problems decided outside the simulation, such as `["poa", "pps"]`; `step` returns
+        their questions.
     measured
         Whether to measure the run. If not, it is slightly faster and has no result.
 

@@ -60,7 +60,7 @@ def load(kind: type[K], path: Path) -> K:
 
 
 def refuse_other(path: Path, simulation: Kernel) -> None:
-    """Refuse to resume from a file whose run had other inputs than a simulation.
+    """Raise an error if the run saved in a file had other inputs than a simulation.
 
     Raises
     ------

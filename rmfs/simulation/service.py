@@ -59,7 +59,7 @@ class Hands(Protocol):
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
-        """Start a unit and return how it is handled; the layout's times in s are given."""
+        """Start a unit, given its times in s in the layout, and return how it is handled."""
         ...
 
 
@@ -67,8 +67,9 @@ class PickService:
     """The service of one pick station.
 
     A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
-    unit is picked leaves its slot when the station has finished that unit. A pod with requests of
-    queued orders only waits for a slot if one is about to become free; otherwise it is sent away.
+    unit is picked leaves its slot when the station has finished that unit. If all requests of a pod
+    belong to queued orders, the pod waits if a slot is about to become free, and is sent away
+    otherwise.
 
     Attributes
     ----------

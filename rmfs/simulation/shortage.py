@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 class ShortOrders(Observer):
     """Checks each order in the backlog after a given waiting time, and periodically after that.
 
-    Only units that are in stock and not needed by orders at stations count as available to it. If
-    they do not suffice, the order is cut to them or cancelled, by the policy. An order that is in
-    the pool of a station, or has been split, is already being served and is not changed.
+    Only units that are in stock and not needed by orders at stations count as available. If they do
+    not suffice for an order, it is cut to the available units or cancelled, depending on the
+    policy. An order that is in the pool of a station, or has been split, is already being served
+    and is not changed.
 
     Parameters
     ----------

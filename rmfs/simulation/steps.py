@@ -26,7 +26,7 @@ PROBLEM_OF: dict[int, Problem] = {
     **dict(enumerate(AHEAD, start=LATE_BINDING + 1)),
     CHARGES: Problem.CA,
 }
-"""The decision problem whose controller is asked in each of these steps."""
+"""The decision problem whose controller is called in each of these steps."""
 
 STEP_OF: dict[Problem, int] = {
     **{problem: step for step, problem in PROBLEM_OF.items()},
@@ -34,7 +34,7 @@ STEP_OF: dict[Problem, int] = {
     Problem.TA: TASKS,
     Problem.REPOSITIONING: TASKS,
 }
-"""The step in which the controller of each decision problem is asked; PP has none."""
+"""The step in which the controller of each decision problem is called; PP has none."""
 
 _ARRIVALS_AFTER = frozenset(
     {
@@ -102,7 +102,7 @@ class Due:
         self.bits |= 1 << ANSWERS
 
     def place_left(self) -> None:
-        """Record that a storage place was left, for which a robot may be waiting."""
+        """Record that a storage location was left, for which a robot may be waiting."""
         if self._world.asking:
             self.bits |= 1 << TASKS
 

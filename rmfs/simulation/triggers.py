@@ -63,7 +63,7 @@ class Triggers(Observer):
         self._signal(Trigger.BUNDLE_PROMISED, bundle)
 
     def bundles_released(self, pod: int) -> None:
-        """Signal that the bundles promised to a pod were released."""
+        """Signal that the bundles for which a pod was chosen were released."""
         self._signal(Trigger.BUNDLE_RELEASED, pod)
 
     def bundle_sent(self, bundle: Bundle) -> None:
@@ -87,7 +87,7 @@ class Triggers(Observer):
         self._signal(Trigger.ROBOT_FREE, robot)
 
     def place_left(self, robot: int) -> None:
-        """Signal that a place was left, for which a robot may be waiting."""
+        """Signal that a storage location was left, for which a robot may be waiting."""
         self._place_left()
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:

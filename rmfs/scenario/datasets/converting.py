@@ -32,7 +32,7 @@ class Converted(NamedTuple):
     first, last
         Times of the first and the last order, in ISO 8601, or in s if the data set has no dates.
     left_out
-        Number of omitted orders or lines for each reason, which is a text.
+        Number of omitted orders or lines, by reason (a text).
     """
 
     orders: int

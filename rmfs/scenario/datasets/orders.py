@@ -48,7 +48,7 @@ class Orders:
     by_name
         Orders by name; None for those not used.
     left_out
-        Number of omitted orders or lines for each reason, which is a text.
+        Number of omitted orders or lines, by reason (a text).
     """
 
     takes: Callable[[datetime | float], bool]
@@ -56,7 +56,7 @@ class Orders:
     left_out: Counter[str] = field(default_factory=Counter)
 
     def begin(self, name: str, time: datetime | float) -> Order | None:
-        """Return the order with a name, created with this time if it is new; None if not used."""
+        """Return the order of a name, created with this time if it is new; None if it is unused."""
         if name not in self.by_name:
             taken = self.takes(time)
             self.by_name[name] = Order(time) if taken else None

@@ -27,7 +27,7 @@ class SkuFileContent:
     bundle_units
         Units per bundle, shape (K,).
     affinity
-        Weights of pairs; None if the file lists no pairs and their share is 0.
+        Weights of pairs; None if the file lists no pairs and the share of affinity is 0.
     names
         Names of the SKUs, or empty.
     """

@@ -75,7 +75,7 @@ def working_w(layout: Layout, energy: Energy) -> float:
 
 
 def refuse(layout: Layout, energy: Energy) -> None:
-    """Refuse batteries that cannot be charged, or with too little power.
+    """Raise an error if batteries cannot be charged, or only with too little power.
 
     Raises
     ------

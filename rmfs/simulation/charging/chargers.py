@@ -1,4 +1,4 @@
-"""The plug-in places of a run, which robots can be told to leave, and which may fail."""
+"""The plug-in places of a run, which may fail, and from which robots can be sent away."""
 
 from __future__ import annotations
 

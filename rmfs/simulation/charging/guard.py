@@ -35,7 +35,7 @@ AGAIN_US = 1_000_000
 
 
 class EnergyGuard:
-    """Watches the levels of all robots.
+    """Watches the battery levels of all robots.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class EnergyGuard:
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:
-        """Before tasks are assigned, send robots that could not complete another one to charge.
+        """Before tasks are assigned, send robots to charge that could not complete another task.
 
         A robot that carries a pod stores it first.
         """

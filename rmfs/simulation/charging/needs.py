@@ -1,11 +1,20 @@
 """Upper bound of the energy a robot needs for one more task and the way to an energy station.
 
-The bound holds for every path in the layout. From rest to rest, the mean power of a robot of *m* kg
-is at most *m p* + standby: a run at top speed *v* draws at most *c g v* against rolling resistance,
-plus at most half *(1 + k) v²* of kinetic energy per kg within the time *v / a + v / b* of
-accelerating and braking; a turn at the angular speed *w* draws *t g w*, plus half *(r w)²* within
-the time of the turn. Times are the unhindered times of traffic. The reserve covers waiting and the
-influence of other robots.
+The bound holds for every path in the layout. For each part of the task, it multiplies the longest
+unhindered time by an upper bound on the mean power; the energy of lifting the pod is added. For
+motion from rest to rest, the mean power in W of a robot with a total mass of *m* kg is at most
+*m p* plus the power of its electronics. Here *p* is the larger of two bounds in W/kg, divided by
+the efficiency of the drive:
+
+- A run at top speed *v* takes at most *c g v* against rolling resistance, with the coefficient *c*
+  and the acceleration of gravity *g*. In addition, it takes at most the kinetic energy
+  *(1 + k) v² / 2* in the time *v / a + v / b*, with the acceleration *a*, the deceleration *b*, and
+  the inertia *k* of rotating parts as a share of the mass.
+- A turn at the angular speed *w* takes *t g w* against its resistance, with the resisting torque
+  per weight *t* in m. In addition, it takes the kinetic energy *(r w)² / 2* in the time of the
+  turn, with the radius of gyration *r*.
+
+The reserve of the battery covers waiting and the influence of other robots.
 """
 
 from __future__ import annotations
@@ -23,7 +32,7 @@ if TYPE_CHECKING:
 
 GRAVITY = 9.80665
 BEND_RAD = np.pi / 2
-"""Smallest turn in rad, a right angle; turns in layouts of this field are at least that."""
+"""Smallest turn in rad that the bound assumes: a right angle, as in layouts on a grid."""
 
 
 def most_w_per_kg(given: Energy, kind: RobotKind) -> float:
@@ -87,8 +96,8 @@ class Needs:
     def task_from_j(self, waypoint: int) -> float:
         """Return the bound `task_j` in J for a robot that stands at a given waypoint.
 
-        The robot fetches any pod from there and brings it to the station farthest from the pod. The
-        result is never greater than `task_j`.
+        The robot fetches any pod, brings it to the station farthest from the pod, stores it
+        anywhere, and goes to charge. The result is never greater than `task_j`.
         """
         if self._bring_j is None:
             each_s = [self._travel.to(at, loaded=True)[self._places] for at in self._work.tolist()]

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 def count_energy(
     given: Energy | None, layout: Layout, world: World, fleet: Traffic, seed: int
 ) -> list[Observer]:
-    """Let traffic count energy, if configured; return the observers that keep it informed.
+    """Let traffic count energy, if configured; return the observers that report changes to it.
 
     Raises
     ------
     InputError
-        If there are batteries that cannot be charged, or with too little power.
+        If there are batteries that cannot be charged, or only with too little power.
     """
     if given is None:
         return []

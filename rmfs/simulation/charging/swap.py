@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class SwapService:
-    """One swap station with its stock; every battery in stock charges on its own.
+    """One swap station with its stock; all batteries in stock charge independently of each other.
 
     Attributes
     ----------

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
 
     Return = Callable[[Call, int], None]
-    """Called with a call whose answer has arrived, and the simulated time (us) of its effect."""
+    """Function of an answered call and the simulated time (us) at which the answer takes effect."""
 
 
 class Pacing(Protocol):
@@ -49,8 +49,9 @@ class Pacing(Protocol):
         modules
             Modules with the functions that answer the questions.
         give
-            Function to call once per answered question with the call, which holds the answer, and
-            the simulated time (us) of its effect; possibly from within `ask`.
+            Function to be called once for each answered question, possibly from within `ask`. Its
+            arguments are the call, which holds the answer, and the simulated time (us) at which the
+            answer takes effect.
         """
         ...
 

@@ -1,4 +1,4 @@
-"""Reproducible modes: a question is solved when asked, its answer delayed by a computed time."""
+"""Reproducible modes: questions are solved at once, and answers are delayed by a computed time."""
 
 from __future__ import annotations
 
@@ -59,7 +59,8 @@ SECONDS_PER_ENTRY = {
     "scipy": 0.0,
     "visits": 6.673e-09,
 }
-"""Seconds per entry built (`Answer.built`), from the same measurement; 0 for other back ends."""
+"""Seconds per entry of the solver's model that is built (`Answer.built`), from the same
+measurement; 0 for other back ends."""
 
 
 SECONDS_PER_INSTANT = 1.4e-4

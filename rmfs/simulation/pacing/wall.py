@@ -42,13 +42,13 @@ class _Open:
 
 
 class Wall:
-    """Submits questions to worker processes and limits the simulation while any is open.
+    """Submits questions to worker processes and limits the simulation while a question is open.
 
     While a question is open, the simulated time since it was asked is at most the wall time since
-    it was submitted, times `speed` (paper, section 3.1). Its answer takes effect when the wall time
-    that it took, times `speed`, has passed in the simulation. This wall time runs from before the
-    question is pickled until the worker has pickled the answer; waiting for a free worker counts,
-    but starting a worker does not.
+    it was submitted, times `speed` (RAWSim-O paper, section 3.1). Its answer takes effect when the
+    wall time that it took, times `speed`, has passed in the simulation. This wall time runs from
+    before the question is pickled until the worker has pickled the answer; waiting for a free
+    worker counts, but starting a worker does not.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Wall:
         self._modules: list[str] = []
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
-        """Start the workers and wait until they are ready, if any controller asks optimisers.
+        """Start the workers and wait until they are ready, if any controller uses optimisers.
 
         Raises
         ------

@@ -74,7 +74,7 @@ class PackingStage(Observer):
                 self._services.append(service)
 
     def takes(self, order: Order) -> bool:
-        """Whether a pick station may release an order; if not, it is called as soon as it may."""
+        """Whether a pick station may release an order. If not, the station is called later."""
         if self._has_room(order):
             return True
         after_us = round(self._given.by_hand_after_s * 1e6)
@@ -106,7 +106,7 @@ class PackingStage(Observer):
             self._let_go()  # parts that had to wait for a slot need none any more
 
     def order_assigned(self, order: Order) -> None:
-        """Update for lines that join a part at its station, which must therefore stay there."""
+        """Keep a part at its pick station after all if new lines have been added to it."""
         for held in self._wall.held:
             if held.order is order:
                 self._forget(held)

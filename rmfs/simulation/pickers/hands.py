@@ -53,7 +53,7 @@ class Hands(Observer):
         return self._staff.at_station[station] is not None
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the task's first pick on the face that is shown; None if there is none."""
+        """Return the task's first pick on the shown face for an order at the station, or None."""
         faces, shown = self._faces, self._shown(station)
         if faces is None or shown < 0:
             return None

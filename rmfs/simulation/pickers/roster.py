@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class RosterClock:
-    """Places and removes pickers according to the roster; without one, all come at time zero.
+    """Places and removes pickers by the roster; without a roster, all pickers come at time zero.
 
     Parameters
     ----------
