@@ -100,7 +100,7 @@ class PhaseConsult:
 
 
 class OutsideConsult(PhaseConsult):
-    """Passes TA's questions on if their problem is decided outside the simulation.
+    """Passes on those questions of TA whose problem is decided outside the simulation.
 
     All other questions are answered as by `PhaseConsult`. The methods that ask for a pod, station,
     place or move raise `Awaits` if the outside must answer first.

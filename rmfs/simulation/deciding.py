@@ -274,7 +274,10 @@ class Deciding:
             self.decided(problem, call)
 
     def decided(self, problem: Problem, call: Call | None) -> None:
-        """Count a decision of a controller with optimisers, for `call`, or for its rule if None."""
+        """Count a decision of a controller that uses optimisers.
+
+        It counts for `call`, or for the controller's own rule if `call` is None.
+        """
         if call is None:
             self._events.rule_decided(problem.value, self._world.now_s)
         else:

@@ -60,7 +60,10 @@ class LateBinding(Observer):
             self._pods.append(pod)
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """Bind requests of queued orders to a task that has just started, after all others."""
+        """Bind requests of queued orders to a task that has just started.
+
+        They come after the other requests of the task.
+        """
         task = self._world.robots[robot].task
         if isinstance(task, PickTask):
             queued = self._world.pick_stations[station].queued

@@ -38,7 +38,7 @@ STALL_S = 3600.0
 
 
 class StalledError(RuntimeError):
-    """Nothing has moved for `STALL_S` while robots wait for a path; the message lists them all."""
+    """Nothing moved for `STALL_S` while robots wait for a path; the message lists all robots."""
 
 
 class Loop:

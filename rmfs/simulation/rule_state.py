@@ -24,7 +24,7 @@ _KNOWN: dict[type, bool] = {}
 
 
 class Kept(NamedTuple):
-    """A saved state of a controller: pickled data, objects they refer to, and counts of calls."""
+    """A saved state of a controller: pickled data, the objects they refer to, and counts."""
 
     content: bytes
     shared: list[object]

@@ -55,7 +55,7 @@ class Hands(Protocol):
         ...
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the next pick of a task; None: the first whose order is at the station."""
+        """Return the pick to make next, or None to take the first whose order is at the station."""
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:

@@ -70,7 +70,7 @@ class EnergyGuard:
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:
-        """Before tasks are assigned, send robots to charge that could not complete another task.
+        """Before tasks are assigned, send to charge any robot that could not complete another task.
 
         A robot that carries a pod stores it first.
         """
