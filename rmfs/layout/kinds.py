@@ -1,10 +1,10 @@
 """Kinds of station: everything that belongs to one, from layout file to viewer colour.
 
 A kind is one class that names its parts, each by class or by reference (`module:Class`). References
-are possible because a layout holds its kinds, and layouts are read without importing the modules
-that simulate. Pick and replenishment stations are kinds like any other. Other kinds are named in
-layout files by `module:Class`, by `path/to/file.py:Class`, or by the name under which a
-distribution registers them in the entry-point group `rmfs.stations`.
+are used because layouts, which hold their kinds, are read without importing the modules that
+simulate. Pick and replenishment stations are kinds like any other. Other kinds are named in layout
+files by `module:Class`, by `path/to/file.py:Class`, or by the name under which a distribution
+registers them in the entry-point group `rmfs.stations`.
 """
 
 from __future__ import annotations

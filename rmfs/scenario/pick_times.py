@@ -108,7 +108,8 @@ def measured_s(path: Path) -> NDArray[np.float64]:
     Raises
     ------
     InputError
-        If the file cannot be read, lacks the column, or contains an invalid time; names the line.
+        If the file cannot be read, lacks the column, or contains an invalid time; the message names
+        the line.
     """
     try:
         text = read_bounded(path).decode("utf-8-sig")

@@ -28,8 +28,9 @@ class Block(Model):
 def not_below(value: Number, info: pydantic.ValidationInfo, key: str) -> Number:
     """Return `value` if it is at least that of another key, which is validated first.
 
-    Because the later field is checked, the two are compared even if other keys of the table are
-    wrong, so that one message lists all errors. A key that is wrong itself is not compared.
+    The check belongs to the field that is validated later. The two values are therefore compared
+    even if other keys of the table are wrong, so that one message lists all errors. If one of the
+    two is wrong itself, they are not compared.
 
     Raises
     ------

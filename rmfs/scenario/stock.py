@@ -83,7 +83,8 @@ def initial_stock(
     InputError
         If a bundle of some SKU fits into no empty pod, or one of `first` finds no room.
     ValueError
-        If `choose` returns a pod without room for a drawn bundle; those of `first` are not checked.
+        If `choose` returns a pod without room for a drawn bundle; bundles of `first` are not
+        checked.
     """
     skus.check_fit(pod_capacity.max(initial=0.0))
     place = _into_random_pods(seed) if choose is None else _where_possible(choose)

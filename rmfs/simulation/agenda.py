@@ -13,7 +13,7 @@ NEVER_US = 1 << 62
 """A time later than any event, in microseconds."""
 
 LAST = 9
-"""Priority of entries that only observe: after everything else at the same time."""
+"""Priority of entries that only observe: they come after all others at the same time."""
 
 
 def us_at(time_s: float) -> int:

@@ -33,7 +33,7 @@ class ArrivalProcess:
     seed
         Seed of the run.
     wanted
-        Called at the times that the scenario specifies, so that `top_up` is called at that instant.
+        Called at each time that the scenario specifies, so that `top_up` is called at that instant.
     recorder
         Records all orders and bundles.
     """

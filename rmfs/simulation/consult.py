@@ -103,7 +103,7 @@ class OutsideConsult(PhaseConsult):
     """Passes on those questions of TA whose problem is decided outside the simulation.
 
     All other questions are answered as by `PhaseConsult`. The methods that ask for a pod, station,
-    place or move raise `Awaits` if the outside must answer first.
+    place or move raise `Awaits` if the question must first be answered outside the simulation.
     """
 
     def __init__(

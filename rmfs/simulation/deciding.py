@@ -80,7 +80,7 @@ class Deciding:
         Parameters
         ----------
         given
-            Iterable of decisions; each is made when it is taken.
+            Iterable of decisions; the controller makes each one when it is taken from the iterable.
         answer
             The call to an optimiser on whose answer the decisions are based, if any.
 
@@ -226,7 +226,7 @@ class Deciding:
         ) from error
 
     def require_possible(self, controller: Controller[Any], given: Any, question: Question) -> None:
-        """Refuse an impossible answer of a user's rule to TA.
+        """Raise an error if a user's rule gives an impossible answer to TA.
 
         Raises
         ------
@@ -302,7 +302,7 @@ class Deciding:
 
 
 def is_foreign(controller: Controller[Any]) -> bool:
-    """Whether a controller is a user's and not part of rmfs."""
+    """Whether a controller was written by a user and is not part of rmfs."""
     return type(controller).__module__.partition(".")[0] != "rmfs"
 
 

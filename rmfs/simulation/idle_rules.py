@@ -14,9 +14,10 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""A rule is reported if it decided nothing in at least this share of the run, at its end."""
+"""A rule is reported if it decided nothing in a period that ends with the run and is at least this
+share of it long."""
 LEAST_S = 300.0
-"""Minimum length in s of the time without a decision for which a rule is reported."""
+"""Minimum length of that period in s."""
 
 
 class IdleRuleWarning(UserWarning):

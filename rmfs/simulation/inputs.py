@@ -29,7 +29,7 @@ class Inputs:
     overrides
         All overrides: those given, and those that a scenario of RAWSim-O implies for the layout.
     pacing
-        Overrides of the pacing, without their first key.
+        (path, value) pairs for the pacing; the first key, `pacing`, is left out of the paths.
     notes
         For each input, what an import of RAWSim-O files left out or does differently.
     """
@@ -108,7 +108,7 @@ def as_overrides(settings: Mapping[str, Any]) -> Overrides:
 
 
 def name_of(given: Any) -> str:
-    """Return the name of an input: of a path without folder and suffix, of an object its `name`."""
+    """Return the name of an input: of a path, its stem; of an object, its attribute `name`."""
     return Path(given).stem if isinstance(given, str | Path) else str(given.name)
 
 

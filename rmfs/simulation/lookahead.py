@@ -26,7 +26,7 @@ class Trial(Protocol):
     def take_over(
         self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
     ) -> None:
-        """Apply a decision, and install the rule that continues."""
+        """Apply a decision, and install the rule that decides from then on."""
         ...
 
     def run_until(self, time_s: float) -> Any:

@@ -44,7 +44,7 @@ class StalledError(RuntimeError):
 class Loop:
     """Repeatedly advances traffic, calls what is due, and lets controllers decide.
 
-    Everything at an instant is handled before the controllers are asked. A run that is simulated
+    Everything at an instant is handled before the controllers are called. A run that is simulated
     in several calls has the same results as one simulated in one call.
 
     Attributes
@@ -128,8 +128,8 @@ class Loop:
         Parameters
         ----------
         limit
-            Called before every instant with the present time in us; returns the time up to which to
-            simulate, and may wait first, for example for a page that shows the run.
+            Called before every instant with the present time in us; returns the time in us up to
+            which to simulate, and may wait first, for example for a page that shows the run.
         """
         try:
             with _present_objects_uncollected():

@@ -5,7 +5,7 @@ that it can be copied and saved while it waits. A question of the decision phase
 decisions are made one by one until one is declined. A question that a TA rule asks in the middle of
 its work interrupts the rule (`Awaits`). When the answer arrives, the rule is restored to its state
 after its last decision, asked again, and given the answers since then in order. The same applies to
-a rule that is carrying out the answer of an optimiser: it continues with the rest.
+a rule that is carrying out the answer of an optimiser: it continues with the rest of that answer.
 """
 
 from __future__ import annotations

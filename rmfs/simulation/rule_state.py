@@ -24,7 +24,7 @@ _KNOWN: dict[type, bool] = {}
 
 
 class Kept(NamedTuple):
-    """A saved state of a controller: pickled data, the objects they refer to, and counts."""
+    """A saved state of a controller, with the objects it refers to and the counts of its calls."""
 
     content: bytes
     shared: list[object]

@@ -79,7 +79,7 @@ def simulate(
         (`module:Class`, `path/to/file.py:Class`, the name of an installed one).
     driver
         Function that drives the simulation from its first event to its last, for example to make it
-        wait for something. By default it runs without interruption.
+        wait for something. By default the simulation runs without interruption.
     pacing
         How simulated time accounts for the computation of optimisers: `instant` (not at all),
         `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).

@@ -60,7 +60,7 @@ def load(kind: type[K], path: Path) -> K:
 
 
 def refuse_other(path: Path, simulation: Kernel) -> None:
-    """Raise an error if the run saved in a file had other inputs than a simulation.
+    """Raise an error if the run saved in a file had other inputs than the given simulation.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
-    """Return what identifies the inputs of a simulation, by name: their hashes, and the seed."""
+    """Return the hashes of the inputs of a simulation, and its seed, by name."""
     return {
         "layout": digest(simulation.layout),
         "scenario": digest(simulation.scenario.model_dump(mode="json")),

@@ -2,8 +2,9 @@
 
 At a pick station a unit occupies the robot for `unit_pick_s` and the station for `unit_transfer_s`.
 Units of the same pod follow each other as fast as the slower of the two allows. After its last unit
-the robot leaves while the station is still busy, so that changing pods takes no extra time if it is
-shorter than the rest of the transfer. At a replenishment station a bundle occupies both.
+the robot leaves while the station is still busy, so that a change of pods takes no extra time if it
+is shorter than the rest of the transfer. At a replenishment station, a bundle occupies both the
+robot and the station.
 """
 
 from __future__ import annotations

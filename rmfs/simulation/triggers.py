@@ -63,7 +63,7 @@ class Triggers(Observer):
         self._signal(Trigger.BUNDLE_PROMISED, bundle)
 
     def bundles_released(self, pod: int) -> None:
-        """Signal that the bundles for which a pod was chosen were released."""
+        """Signal that the bundles assigned to a pod were released."""
         self._signal(Trigger.BUNDLE_RELEASED, pod)
 
     def bundle_sent(self, bundle: Bundle) -> None:

@@ -59,8 +59,8 @@ class VisitController(Observer, Generic[S]):
     def visit_for(self, robot: Robot) -> Visit | None:
         """Return the visit for a robot that needs a task, or None.
 
-        A robot that carries a pod can only use that one; an empty one may fetch any available pod
-        (`view.storage.is_at_hand`).
+        A robot that carries a pod can only use this pod; a robot without a pod may fetch any
+        available pod (`view.storage.is_at_hand`).
         """
         raise NotImplementedError
 

@@ -46,7 +46,7 @@ def refuse(layout: Layout, source: str, *, allow_not_well_formed: bool = False) 
     Raises
     ------
     LayoutError
-        If there are violations that are not allowed; names all of them.
+        If there are violations that are not allowed; the message lists all of them.
     """
     problems = [
         str(violation)

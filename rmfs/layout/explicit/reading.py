@@ -35,7 +35,7 @@ def read_json(path: Path) -> Layout:
     Raises
     ------
     InputError
-        If the file is missing, not JSON, or not a valid layout; names all errors.
+        If the file is missing, not JSON, or not a valid layout; the message lists all errors.
     """
     return build(_parse(path), str(path), path.parent)
 

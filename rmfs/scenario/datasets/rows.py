@@ -103,7 +103,7 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
     Raises
     ------
     InputError
-        If the file cannot be read, or a column or a row is wrong; names the file and the line.
+        If the file cannot be read, or a column or a row is wrong; the message names file and line.
     """
     reader = None
     try:

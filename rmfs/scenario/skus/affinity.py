@@ -48,8 +48,8 @@ class Affinity:
     def samplers(self, skus: int) -> Callable[[int], Categorical | None]:
         """Return a function that returns, for a SKU, the sampler of the SKU on the next line.
 
-        A sampler takes memory in proportion to the number of SKUs, so only recent ones are cached.
-        It is None if no SKU has a positive affinity to the given one.
+        A sampler takes memory in proportion to the number of SKUs, so only recent samplers are
+        cached. A sampler is None if no SKU has a positive affinity to the given one.
         """
         order = np.argsort(self.first, kind="stable")
         starts = np.searchsorted(self.first[order], np.arange(skus + 1))

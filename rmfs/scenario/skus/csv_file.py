@@ -36,7 +36,7 @@ def read_sku_table(path: Path) -> SkuFileContent:
     Raises
     ------
     InputError
-        If the file cannot be read, or a field is wrong; names the line.
+        If the file cannot be read, or a field is wrong; the message names the line.
     """
     rows = _rows(path)
     head = next(rows, (1, []))[1]

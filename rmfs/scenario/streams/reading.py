@@ -43,7 +43,8 @@ def read_orders(
     Raises
     ------
     InputError
-        If the file cannot be read, or rows are invalid; names the first of them with the reasons.
+        If the file cannot be read, or rows are invalid; the message lists the first of them with
+        the reasons.
     """
     problems = Problems(path)
     rows = OrderRows(skus, problems, _word(path), zero, classes)
@@ -70,7 +71,8 @@ def read_bundles(
     Raises
     ------
     InputError
-        If the file cannot be read, or rows are invalid; names the first of them with the reasons.
+        If the file cannot be read, or rows are invalid; the message lists the first of them with
+        the reasons.
     """
     problems = Problems(path)
     rows = BundleRows(skus, problems, _word(path), largest, zero)

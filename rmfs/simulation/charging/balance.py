@@ -64,8 +64,8 @@ def balance(layout: Layout, energy: Energy) -> Balance:
 def working_w(layout: Layout, energy: Energy) -> float:
     """Estimate the power in W of a fleet that drives at top speed, half the time with a full pod.
 
-    Starts and turns take more, waiting takes less; at the shipped sites the two roughly cancel. It
-    is an estimate, not a bound.
+    Starts and turns take more, waiting takes less; at the shipped sites these effects roughly
+    cancel. It is an estimate, not a bound.
     """
     pod_kg = energy.pod_kg + energy.goods_kg_per_space * float(layout.pod_capacity.mean()) / 2
     speed = sum(kind.top_speed_m_s for kind in layout.robot_kinds) / len(layout.robot_kinds)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def count_energy(
     given: Energy | None, layout: Layout, world: World, fleet: Traffic, seed: int
 ) -> list[Observer]:
-    """Let traffic count energy, if configured; return the observers that report changes to it.
+    """Let traffic count energy, if configured; return the observers that the run needs for it.
 
     Raises
     ------

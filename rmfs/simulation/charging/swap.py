@@ -42,7 +42,7 @@ class SwapService:
         self._task: ChargeTask | None = None
 
     def go_on(self) -> None:
-        """Begin the swap for the robot at the station, which waits until a battery is ready."""
+        """Begin the swap for the robot at the station; the robot waits until a battery is ready."""
         robot = self.station.robot
         task: Any = self._world.robots[robot].task if robot >= 0 else None
         if self._task is None and isinstance(task, ChargeTask):

@@ -64,8 +64,9 @@ measurement; 0 for other back ends."""
 
 
 SECONDS_PER_INSTANT = 1.4e-4
-"""Seconds per simulated instant of a trial (back end `rollout`), including copies of the run: rule
-POA rollout at the site `small-arrivals`, same machine and day (6.8 s for 49,000 instants)."""
+"""Seconds per simulated instant of a trial (back end `rollout`), including copies of the run.
+Measured with the POA rule `rollout` at the site `small-arrivals` on the same machine (6.8 s for
+49,000 instants)."""
 
 
 class Computed(ABC):

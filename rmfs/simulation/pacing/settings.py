@@ -38,7 +38,7 @@ class WallPacing(_Mode):
     workers: Annotated[int, Field(ge=1, le=64)] = 2
     """Number of single-threaded worker processes; further questions wait for one."""
     patience_s: Positive = 300.0
-    """Wall time after which a worker that has not answered is stopped and replaced."""
+    """Wall time in s after which a worker that has not answered is stopped and replaced."""
 
 
 class WorkPacing(_Mode):
@@ -53,7 +53,7 @@ class WorkPacing(_Mode):
     the published figures."""
     seconds_per_entry: NotNegative | None = None
     """Simulated seconds per entry of the solver's model that is built, for all back ends; by
-    default as above."""
+    default those of the machine of the published figures."""
 
 
 class FixedPacing(_Mode):

@@ -1,4 +1,4 @@
-"""Wall pacing: optimisers run in parallel with the simulation, which waits for their wall time."""
+"""Wall pacing: optimisers run in parallel, and their wall time counts as simulated time."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ from typing import Any
 from rmfs.control.asks import checked
 
 STAMP = struct.Struct("d")
-"""Prefix of each reply: the time when it was ready, on the clock that all processes share (s)."""
+"""Prefix of each reply: the time in s when it was ready, on the clock that all processes share."""
 
 READY = -1
 """Number of the first reply, which means that the modules are imported."""

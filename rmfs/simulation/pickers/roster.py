@@ -26,7 +26,8 @@ class RosterClock:
     gone_s
         Time of day at time zero, in s.
     services
-        Services of all stations, pick stations first; those that get a picker continue.
+        Services of all stations, pick stations first; a station that gets a picker continues its
+        service.
     """
 
     def __init__(
