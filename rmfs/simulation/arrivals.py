@@ -152,7 +152,7 @@ class ArrivalProcess:
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:
-        """Available units minus ordered units not bound to pods, per SKU, shape (K,)."""
+        """Available units of each SKU minus ordered units not yet bound to a pod, shape (K,)."""
         return self._world.inventory.uncommitted
 
     @property

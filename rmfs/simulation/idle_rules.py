@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""A rule is reported if it decided nothing in a period that ends with the run and is at least this
-share of it long."""
+"""Minimum time between the last decision of a rule and the end of the run for which the rule is
+reported, as a share of the run."""
 LEAST_S = 300.0
-"""Minimum length of that period in s."""
+"""The same minimum in s; the larger of the two applies."""
 
 
 class IdleRuleWarning(UserWarning):

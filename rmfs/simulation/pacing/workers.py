@@ -1,4 +1,4 @@
-"""Worker processes from the simulation's side: started, asked, and replaced if they fail."""
+"""Worker processes as seen by the simulation, which starts, asks and replaces them."""
 
 from __future__ import annotations
 
