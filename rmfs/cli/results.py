@@ -65,8 +65,8 @@ def view(
         list[Path] | None,
         typer.Argument(
             metavar="[RUN [RUN]]",
-            help="Run folder with a trace, or two to show side by side; without one, a form "
-            "that starts a run.",
+            help="Run folder with a trace, or two to show side by side; without one, the "
+            "page shows a form that starts a run.",
             show_default=False,
         ),
     ] = None,
@@ -110,7 +110,7 @@ def compare(
         bool, typer.Option("--all", help="Show every column that differs.")
     ] = False,
     confidence: Annotated[
-        float, typer.Option(min=0.5, max=0.999, help="Level of the intervals.")
+        float, typer.Option(min=0.5, max=0.999, help="Confidence level of the intervals.")
     ] = 0.95,
     allow_incomplete: Annotated[
         bool,

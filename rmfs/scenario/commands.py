@@ -120,7 +120,7 @@ def convert(
     share: Annotated[
         float, typer.Option(min=1e-6, max=1.0, help="Share of the orders to use, drawn at random.")
     ] = 1.0,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of that draw.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the draw of orders.")] = 0,
     force: Force = False,
 ) -> None:
     """Convert a public data set, which you have downloaded, to a file of orders."""
@@ -185,9 +185,11 @@ def export(
         Literal["orders", "bundles"], typer.Option(help="Which stream to write.")
     ] = "orders",
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
-    pick_stations: Annotated[int, typer.Option(min=1, help="Number, for rates per station.")] = 4,
+    pick_stations: Annotated[
+        int, typer.Option(min=1, help="Number of pick stations, for rates per station.")
+    ] = 4,
     replenishment_stations: Annotated[
-        int, typer.Option(min=1, help="Number, for rates per station.")
+        int, typer.Option(min=1, help="Number of replenishment stations, for rates per station.")
     ] = 4,
     settings: Settings = None,
     force: Force = False,

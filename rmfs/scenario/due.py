@@ -96,8 +96,8 @@ class NormalDue(Block):
         10800.0, description="mean time from arrival to due time before truncation, s"
     )
     sd_s: Positive = Field(900.0, description="standard deviation before truncation, s")
-    min_s: Positive = Field(7200.0, description="least offset, s")
-    max_s: Positive = Field(14400.0, description="greatest offset, s")
+    min_s: Positive = Field(7200.0, description="shortest time from arrival to due time, s")
+    max_s: Positive = Field(14400.0, description="longest time from arrival to due time, s")
 
     @pydantic.field_validator("max_s")
     @classmethod

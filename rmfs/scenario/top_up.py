@@ -126,5 +126,5 @@ class BundleTopUp(_TopUp):
         return not full and waiting < self._config.bundles and time_s >= self.blocked_until_s
 
     def accepts(self, load: float, space: float) -> bool:
-        """Return whether a bundle of this size may join the load; if not, call `failed`."""
+        """Return whether a bundle of this size may be added; if not, the caller calls `failed`."""
         return load + space <= self._config.load_limit_share * self._capacity

@@ -12,10 +12,12 @@ from rmfs.scenario.quantities import Block, Natural, NotNegative, Positive, not_
 
 class _Repeated(Block):
     every_s: float = Field(
-        ge=1, description="mean time between two occurrences in s, exponential; at least 1"
+        ge=1,
+        description="mean of the exponential time between two occurrences, s; at least 1",
     )
     lasting_s: Positive = Field(
-        description="mean duration in s, uniform between half of it and one and a half times it"
+        description="mean duration in s; durations are uniform between half and one and a half "
+        "times this mean"
     )
 
 
@@ -26,7 +28,9 @@ class Breakdowns(_Repeated):
 class SlowRobots(_Repeated):
     """A robot drives more slowly for a while; its speed changes only while it stands still."""
 
-    speed_share: float = Field(0.5, gt=0, lt=1, description="share of its top speed")
+    speed_share: float = Field(
+        0.5, gt=0, lt=1, description="speed of a slow robot, as a share of its top speed"
+    )
 
 
 class Closures(_Repeated):

@@ -22,7 +22,7 @@ PRESETS: dict[str, dict[str, Any]] = {
 class Battery(Block):
     """The battery of each robot, and how much of it may be used."""
 
-    capacity_wh: Positive = Field(1000.0, description="Wh")
+    capacity_wh: Positive = Field(1000.0, description="capacity, Wh")
     taper_from_share: Efficiency = Field(
         0.8,
         description="charge level above which the charging power falls, linearly to 0 at full; "
@@ -38,9 +38,11 @@ class Battery(Block):
         "reserve_share",
     )
     initial_least_share: Share = Field(
-        0.5, description="charge levels at time zero are uniform between this ..."
+        0.5,
+        description="lowest charge level at time zero; levels are uniform from here to "
+        "initial_most_share",
     )
-    initial_most_share: Share = Field(1.0, description="... and this")
+    initial_most_share: Share = Field(1.0, description="highest charge level at time zero")
     rescue_after_s: Positive = Field(
         900.0, description="time in s until a stranded robot is recharged on the spot"
     )
@@ -68,7 +70,7 @@ class Inductive(Block):
 
     power_w: Positive = Field(200.0, description="power in W for a robot at such a waypoint")
     at: Literal["pick-stations", "replenishment-stations", "all-stations"] = Field(
-        "all-stations", description="whose queues"
+        "all-stations", description="stations whose queues charge robots"
     )
     places: Annotated[int, Field(ge=1)] = Field(
         4, description="number of charging places in each queue, starting at the station"
@@ -79,7 +81,7 @@ class Energy(Block):
     """Masses, resistances and powers; see `rmfs/traffic/src/energy.rs` for the equations."""
 
     preset: Literal["standard", "kiva-like", "light"] = Field(
-        "standard", description="source of the values that are not given (docs/energy.md)"
+        "standard", description="set of values for keys that are not given (docs/energy.md)"
     )
     robot_kg: Positive = Field(100.0, description="mass of a robot without load, kg")
     pod_kg: NotNegative = Field(100.0, description="mass of an empty pod, kg")

@@ -15,8 +15,8 @@ class ToteTravel(Block):
     constant_s: NotNegative = Field(0.0, description="constant part of each trip, s")
     speed_m_s: Positive | None = Field(
         None,
-        description="speed in m/s over the rectilinear distance from the pick station to the "
-        "wall, in addition; default: distance does not count",
+        description="speed in m/s at which a tote, after the constant part, travels the rectilinear "
+        "distance from the pick station to the wall; default: only the constant part",
     )
     x_m: float | None = Field(
         None, description="x of the wall, m; default: the mean of the pick stations"
@@ -53,9 +53,7 @@ class Packing(Block):
     )
     packers: Count | None = Field(None, description="number of packers; default: unlimited")
     order_s: NotNegative = Field(0.0, description="packing time per order, s")
-    part_s: NotNegative = Field(
-        0.0, description="packing time per part of an order, s, in addition"
-    )
+    part_s: NotNegative = Field(0.0, description="additional packing time per part of an order, s")
     variation: NotNegative = Field(
         0.0,
         description="coefficient of variation of packing times, which are gamma distributed; 0: "

@@ -102,8 +102,8 @@ class Fatigue(Block):
     )
     slowdown: Annotated[float, Field(ge=0, le=9)] = Field(
         0.3,
-        description="share by which fatigue 1 lengthens the time of a unit, in proportion below; "
-        "9: ten times as long",
+        description="share by which fatigue 1 lengthens the time of a unit; less fatigue lengthens "
+        "it in proportion; 9: ten times as long",
     )
     initial: Annotated[float, Field(ge=0, lt=1)] = Field(
         0.0, description="fatigue of every picker at time zero; below 1"

@@ -84,10 +84,10 @@ class HighLowRate(Block):
     kind: Literal["high-low"] = "high-low"
     high_per_h: NotNegative = Field(description="rate in high periods, which replaces the low one")
     low_to_high_per_h: Positive = Field(
-        0.5, description="switches to a high period per h of a low one"
+        0.5, description="number of switches to a high period per h of low periods"
     )
     high_to_low_per_h: Positive = Field(
-        2.0, description="switches to a low period per h of a high one"
+        2.0, description="number of switches to a low period per h of high periods"
     )
 
 

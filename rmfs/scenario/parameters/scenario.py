@@ -26,8 +26,8 @@ class Stock(Block):
     initial_share: Share = Field(0.7, description="share of the pods' capacity filled at time zero")
     order_cover: NotNegative = Field(
         0.0,
-        description="store this multiple of each SKU's units in the file of orders first, in "
-        "whole bundles, counting orders within the run; needs demand.mode = stream",
+        description="of each SKU, first store whole bundles with at least this multiple of the "
+        "units that the file of orders contains within the run; needs demand.mode = stream",
     )
 
 
