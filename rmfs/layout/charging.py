@@ -32,7 +32,7 @@ class SwapParameters(Model):
 
 
 class RecoveryKind(StationKind):
-    """Kind of station where robots without pods get energy; charge assignment (CA) sends robots."""
+    """Kind of station where robots without pods get energy, as charge assignment (CA) decides."""
 
     task = "rmfs.world.charging:ChargeTask"
     state = "rmfs.world.charging:RecoveryStation"

@@ -192,7 +192,7 @@ def station_kind(
     name
         Name of the kind, which is the key of its table below `other_stations`.
     reference
-        Its class.
+        Reference to its class, as in the layout file.
     folder
         Folder where a file is looked for first. Default: the working directory.
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BLOCKED = "@OTW"
-"""Signs of cells that cannot be entered; all others (`.GSE`) are free."""
+"""Signs of cells that cannot be entered; all others (`.`, `G`, `S`, `E`) are free."""
 
 MOST_CELLS = 1_200_000
 """Maximum number of cells of a map; the largest published ones have 1024 x 1024."""

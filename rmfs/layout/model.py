@@ -25,9 +25,9 @@ class Tier:
     Attributes
     ----------
     length_m, width_m
-        Extent in x and in y.
+        Extent in x and in y, in m.
     height_m
-        Height of the floor above the ground, for drawing.
+        Height of the floor above the ground in m, for drawing.
     """
 
     length_m: float
@@ -100,7 +100,7 @@ class OtherStation:
 
 @dataclass(frozen=True, slots=True)
 class Elevator:
-    """A lift for one robot at a time.
+    """An elevator, which carries one robot at a time.
 
     Attributes
     ----------

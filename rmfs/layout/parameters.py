@@ -18,7 +18,7 @@ from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Spac
 
 
 class PerSide(Strict):
-    """Number of stations of a kind, or of elevators, on each side of a tier."""
+    """Number of stations (or elevators) on each side of a tier."""
 
     west: Amount = Field(0, description="on the side with the smallest x")
     east: Amount = Field(0, description="on the side with the largest x")

@@ -24,7 +24,7 @@ CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 def check(layout: Layout) -> list[Violation]:
     """Return all violations of a layout, those with severity "impossible" first.
 
-    The check covers: there are robots, and stations of both kinds; every endpoint (storage
+    The following is checked: there are robots, and stations of both kinds; every endpoint (storage
     location, station, elevator) can be reached and left, with and without load; the aisles are
     strongly connected; queue lists are chains; every robot has a place to rest; bodies stay apart;
     and the conditions W1-W3 of deadlock freedom.

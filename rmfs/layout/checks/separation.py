@@ -2,8 +2,7 @@
 
 A robot on an edge reserves both its ends. Reservations therefore keep two robots apart if edges
 without a common end, and waypoints beside an edge, are at least the sum of the radii apart
-(path-planning reference, 3.3). Pods are discs and count everywhere, since they are carried
-everywhere.
+(docs/safety.md). Pods are discs and count everywhere, since they are carried everywhere.
 """
 
 from __future__ import annotations
@@ -31,8 +30,8 @@ LONG = 3.0
 """Edges longer than this multiple of the median length are compared with all others one by one."""
 
 GRID_TOLERANCE = 1e-6
-"""Share of the grid width by which it must exceed the required distance. Positions may be off the
-grid by an eighth of this share."""
+"""Share of the grid width by which this width must exceed the required distance. Positions may be
+off the grid by an eighth of this share."""
 
 
 def separation(layout: Layout) -> Iterator[Violation]:

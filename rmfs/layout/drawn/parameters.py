@@ -1,4 +1,4 @@
-"""Parameters of a drawn layout beside the picture; all have defaults."""
+"""Parameters of a drawn layout in addition to the picture; all have defaults."""
 
 from __future__ import annotations
 

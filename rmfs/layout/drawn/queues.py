@@ -18,7 +18,7 @@ NUMBERS = "123456789"
 class ForkError(ValueError):
     """Several cells could be the next place of a queue.
 
-    Stored are the cell of the last place that is known, and its rank, counted from the station.
+    The error stores the cell of the last known place, and the rank of the next one.
     """
 
     def __init__(self, cell: Cell, rank: int) -> None:

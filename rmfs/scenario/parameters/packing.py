@@ -15,8 +15,8 @@ class ToteTravel(Block):
     constant_s: NotNegative = Field(0.0, description="constant part of each trip, s")
     speed_m_s: Positive | None = Field(
         None,
-        description="speed in m/s at which a tote, after the constant part, travels the rectilinear "
-        "distance from the pick station to the wall; default: only the constant part",
+        description="speed in m/s at which a tote, after the constant part, travels the "
+        "rectilinear distance from the pick station to the wall; default: only the constant part",
     )
     x_m: float | None = Field(
         None, description="x of the wall, m; default: the mean of the pick stations"
