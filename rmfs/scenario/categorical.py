@@ -18,11 +18,11 @@ SCALE = 2**40
 class Categorical:
     """Indices 0, 1, ... with probabilities in proportion to given weights.
 
-    Weights are converted to integers that sum to about `SCALE`, and a uniform number in [0, 1) to
-    an integer below their sum. Because integers are compared, a draw is the same on every platform:
-    mathematics libraries may differ in the last bits of a weight, but these vanish in the rounding.
-    Rounding changes no probability by more than about K / `SCALE`, and a positive weight never
-    becomes zero.
+    Weights are converted to integers that sum to about `SCALE`, and a uniform number in [0, 1) is
+    converted to an integer below their sum. Because integers are compared, a draw is the same on
+    every platform: mathematics libraries may differ in the last bits of a weight, but these vanish
+    in the rounding. Rounding changes no probability by more than about K / `SCALE`, and a positive
+    weight never becomes zero.
 
     Parameters
     ----------

@@ -23,12 +23,12 @@ NEVER_US = 1 << 62
 
 
 def nearest_us(time_s: float) -> int:
-    """Return the microsecond nearest to a time."""
+    """Return the microsecond nearest to a time in s."""
     return round(time_s * US_PER_S)
 
 
 def first_us(time_s: float) -> int:
-    """Return the first microsecond that is not before a time."""
+    """Return the first microsecond that is not before a time in s."""
     time_us = ceil(time_s * US_PER_S)
     if (time_us - 1) / US_PER_S >= time_s:
         return time_us - 1
@@ -43,7 +43,7 @@ class Cycle:
     length_s
         Length of the cycle.
     gone_s
-        Time by which the cycle has advanced at time zero; may exceed its length.
+        Time by which the cycle has advanced at time zero, in s; may exceed its length.
     """
 
     def __init__(self, length_s: float, gone_s: float) -> None:

@@ -159,7 +159,7 @@ def twin(
     seed: Annotated[int, typer.Option(min=0, help="Seed of the twin's SKUs.")] = 0,
     force: Force = False,
 ) -> None:
-    """Fit a generator to a file of orders, as a scenario that can be published instead of it."""
+    """Fit a scenario to a file of orders; the scenario can be published instead of the file."""
     from rmfs.scenario.twin import fit_twin
     from rmfs.scenario.twin.telling import told, write_table, write_twin
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Place = Callable[[BundleContent, NDArray[np.float64]], int | None]
 
 POD_DRAWS = 32
-"""Number of pods tried for a bundle before those with room are looked up."""
+"""Number of pods tried for a bundle before all pods with room are listed."""
 
 
 @dataclass(frozen=True)

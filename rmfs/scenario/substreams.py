@@ -40,7 +40,8 @@ class Substreams:
     def at(self, ordinal: int) -> Callable[[], float]:
         """Return a function that returns the uniform numbers in [0, 1) of a substream, in order.
 
-        It is valid until the next call of `at`, because all substreams share one generator.
+        The function is valid until the next call of `at`, because all substreams share one
+        generator.
         """
         self._counter[1] = ordinal
         self._generator.state = self._start

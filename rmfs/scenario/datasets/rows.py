@@ -93,7 +93,7 @@ class Row:
 
 
 def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Iterator[Row]:
-    """Read a CSV file row by row; other columns are ignored.
+    """Read a CSV file row by row; columns that are not required are ignored.
 
     Parameters
     ----------

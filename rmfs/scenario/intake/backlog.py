@@ -123,7 +123,7 @@ class BacklogBundles:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
-        """Return a bundle; None if the backlog is full or paused, or the bundle too large."""
+        """Return a bundle; None if the backlog is full or paused, or if the bundle is too large."""
         load = state.load
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)
         if not self._rest.ends(now_us) or not wanted:

@@ -48,7 +48,8 @@ class Timed(Generic[T]):
         Raises
         ------
         InputError
-            If it is not drawn by a Poisson process, as when it comes from a file.
+            If arrival times are not drawn by a Poisson process, for example because they come from
+            a file.
         """
         if self._next is None:
             return

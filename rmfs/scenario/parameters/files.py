@@ -28,7 +28,7 @@ def existing(*suffixes: str) -> pydantic.AfterValidator:
 
 
 StreamFile = Annotated[Path, pydantic.Strict(strict=False), existing(".csv", ".parquet", ".xitem")]
-"""Orders or bundles with their arrival times."""
+"""A file of orders or bundles with their arrival times."""
 
 SkuSetFile = Annotated[
     Path, pydantic.Strict(strict=False), existing(".json", ".csv", ".xgenc", ".xitem")

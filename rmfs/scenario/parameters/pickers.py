@@ -208,8 +208,8 @@ class Roster(Block):
 class Pickers(Block):
     """Pickers at the pick stations; see docs/pickers.md.
 
-    With the default values all are alike and always present, and every unit takes the station's
-    time.
+    With the default values all pickers are alike and always present, and every unit takes the
+    station's time.
     """
 
     unit_time: UnitTime = Field(ConstantTime(), description="how long a unit occupies a picker")

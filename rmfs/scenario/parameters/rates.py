@@ -77,8 +77,8 @@ class BundleSteps(Steps):
 class HighLowRate(Block):
     """A rate that alternates between low and high periods, starting with a low one.
 
-    The length of periods is exponential. Orders and bundles with the same switching rates share
-    their high periods.
+    The lengths of the periods are exponentially distributed. Orders and bundles with the same
+    switching rates share their high periods.
     """
 
     kind: Literal["high-low"] = "high-low"

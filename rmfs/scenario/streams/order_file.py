@@ -27,8 +27,8 @@ class OrderFile:
     line
         Number of the line (CSV) or row (Parquet) of each order line in the file, shape (m,).
     columns
-        For each further column of the file, its m texts: an array of positions, shape (m,), in a
-        tuple of the distinct texts.
+        For each further column of the file, its m texts: an array of indices, shape (m,), and the
+        tuple of distinct texts to which the indices refer.
     """
 
     names: tuple[str, ...]

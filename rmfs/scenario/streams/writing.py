@@ -2,7 +2,7 @@
 
 Every stream has one canonical text: the CSV file written here, with times in s to the microsecond.
 Its SHA-256 is the stream's digest, whatever the format of the file from which it was read; for a
-CSV file written here it is the SHA-256 of the file.
+CSV file written here, the digest is the SHA-256 of the file itself.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LEVEL = 0.95
-"""Confidence of all intervals."""
+"""Confidence level of all intervals."""
 
 
 class Estimate(NamedTuple):
