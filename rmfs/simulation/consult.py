@@ -132,7 +132,7 @@ class OutsideConsult(PhaseConsult):
         return self._asked(question, lambda: super(OutsideConsult, self).place_for(robot))
 
     def may_move(self) -> bool:
-        """Whether repositioning ever moves pods; always true if it is decided outside."""
+        """Whether repositioning ever moves pods; true if it is decided outside the simulation."""
         return Problem.REPOSITIONING in self._outside.problems or super().may_move()
 
     def move_for(self, robot: Robot) -> Move | None:

@@ -148,7 +148,7 @@ class Deciding:
         state: RuleState,
         answer: Call | None = None,
     ) -> None:
-        """Do the same as `ask` for a rule that may be interrupted by questions decided outside.
+        """Do the same as `ask` if questions decided outside the simulation may interrupt the rule.
 
         Parameters
         ----------

@@ -85,7 +85,7 @@ class Kernel(Loop):
     Raises
     ------
     InputError
-        If a problem cannot be decided outside.
+        If a problem cannot be decided outside the simulation.
     """
 
     def __init__(

@@ -27,7 +27,7 @@ ASKED_BY_TA = frozenset({Problem.PPS, Problem.PSA, Problem.REPOSITIONING})
 
 
 def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) -> frozenset[Problem]:
-    """Return the named problems, if they can be decided outside.
+    """Return the named problems, if they can be decided outside the simulation.
 
     Raises
     ------

@@ -142,7 +142,7 @@ class DecisionPhase:
         self._controllers.made(choice)
 
     def take_over(self, problem: Problem, controller: Controller[Any]) -> None:
-        """Install an existing controller for a problem; nothing is decided outside any more."""
+        """Install an existing controller; no problem is decided outside the simulation any more."""
         self.outside.problems, self.outside.pending = frozenset(), None
         self._controllers.put(problem, controller)
         self._alarms.cancel(problem)
@@ -157,7 +157,7 @@ class DecisionPhase:
     # --- the steps --------------------------------------------------------------------------------
 
     def settle(self) -> bool:
-        """Process the steps that are due; return False if a decision must be made outside."""
+        """Process the due steps; return False if a decision must be made outside the simulation."""
         outside, due, storage, what = self.outside, self._due, self._world.storage, self._steps
         if outside.pending is not None or (self._interrupted and not self._go_on()):
             return False
@@ -378,7 +378,7 @@ class DecisionPhase:
         return rule.move(robot)
 
     def end_turn(self, problem: Problem) -> None:
-        """End a turn in which decisions were made outside; the decision phase can then continue."""
+        """End a turn of decisions made outside the simulation; the phase can then continue."""
         self._interrupted = 0
         self.outside.refused.clear()
         self._alarms.asked(problem)
