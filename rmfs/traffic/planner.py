@@ -30,8 +30,8 @@ Question = Search | Along | Conflict | Reserved
 
 `Search(agent, around=(), until_us=None, labels=2000)`
     The best path of an agent (its index in `agents`) that avoids all granted motion and the paths
-    in `around`; None if none is found. It leads to the goal or, if `until_us` is given, is searched
-    within a window that ends then. At most `labels` labels are expanded.
+    in `around`; None if none is found. It leads to the goal; if `until_us` is given, it is searched
+    only within a window that ends then. At most `labels` labels are expanded.
 `Along(agent, stops, ready_us=None)`
     The path over the given stops (waypoints) by straight runs and elevator rides, starting as early
     as possible but not before `ready_us`, ignoring other robots.

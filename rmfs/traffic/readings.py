@@ -34,9 +34,10 @@ class Readings:
         """Return the energy of each robot, up to now, in columns of shape (R,).
 
         Since the last reset: `drive_j`, `turn_j`, `lift_j`, `standby_j`, `recuperated_j`,
-        `charged_j` and `charging_s`; `used_j` is the sum of the first four minus `recuperated_j`.
-        Since time zero: `initial_j`, `ever_charged_j` and `ever_used_j`; `level_j` is the sum of
-        the first two minus the last. Energies are in J.
+        `charged_j` and `charging_s`; `used_j` is the sum of `drive_j`, `turn_j`, `lift_j` and
+        `standby_j` minus `recuperated_j`. Since time zero: `initial_j`, `ever_charged_j` and
+        `ever_used_j`; `level_j` is the sum of `initial_j` and `ever_charged_j` minus `ever_used_j`.
+        Energies are in J.
 
         Raises
         ------
@@ -59,8 +60,8 @@ class Readings:
         Per waypoint, shape (N,): `visits` and `waiting_s`, and the part of them with a pod,
         `loaded_visits` and `loaded_waiting_s`. Per pair of waypoint and purpose that occurred,
         shape (M,): `stays_waypoint`, `stays_purpose`, `stays_visits` and `stays_waiting_s`. The
-        purpose is the number of the station for which a robot works, also on its way to the pod; S
-        for storing or fetching a pod otherwise; S + 1 for everything else.
+        purpose is the number of the station for which a robot works, also on its way to the pod; S,
+        the number of stations, for storing or fetching a pod otherwise; S + 1 for everything else.
         """
         counted: dict[str, NDArray[Any]] = self._core.heat()
         at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])

@@ -57,9 +57,9 @@ class PodTrips:
     """Robots fetch pods, bring them to stations and store them again.
 
     Pods and free storage locations are divided among the robots, so that robots do not affect each
-    other's choices. If the queue of a station has n places, at most max(1, n - 1) robots are on
-    their way to it or in it; further robots wait beneath their pods (condition W3 of
-    `docs/safety.md`).
+    other's choices. If the queue of a station has n places, including the station itself, at most
+    max(1, n - 1) robots are on their way to it or in it; further robots wait beneath their pods
+    (condition W3 of `docs/safety.md`).
 
     Parameters
     ----------
