@@ -206,11 +206,11 @@ of the mean. In the rows *normal*, both are normally distributed; in the rows *s
 exponential. Each figure comes from {experiments:,} experiments.
 
 - **t**, **bootstrap**: how often a 95 % interval of a fixed number of seeds covers the true mean.
-- **sequential**: how often an interval covers the true mean if seeds are added, starting from this
-  number, until its half width is below 2 % of the mean; the next column is the mean number of seeds
-  that were needed.
+- **sequential**: how often an interval covers the true mean if seeds are added to the number in the
+  column *seeds* until the half width is below 2 % of the mean. The next column is the mean number of
+  seeds that were needed.
 - **false alarms**: how often at least one arm is found to differ from the baseline at the 5 %
-  level although all arms are equal (paired t tests, for five arms with Holm's correction).
+  level although all arms have the same mean (paired t tests, for five arms with Holm's correction).
 
 {table}
 
@@ -220,8 +220,8 @@ little, so its interval covers slightly less than stated; begin with ten seeds r
 
 The selection of the best of five arms (procedure KN) was tested in its hardest case, in which the
 best arm is better by exactly the smallest difference worth detecting. The selection was
-correct in {right:.3f} of the experiments (nominal: 0.95), with {taken:.0f} runs of all
-arms on average.
+correct in {right:.3f} of the experiments (nominal: 0.95). It took {taken:.0f} runs on average, all five arms
+together.
 """
 
 
