@@ -43,10 +43,13 @@ and 20 replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 
 rule is measured in a run of its own, with the default rules for all other problems.
 
 A *call* asks a controller once and may result in several decisions or in none. The column *median,
-decision* covers only calls that resulted in decisions, and divides the time of each by the number
-of its decisions. The other columns are times per call. If a controller consults others, their time
-is not counted for it. Rows such as *only age* are PPS `lexicographic` with that criterion first,
-ties broken at random. This page is written by `python -m tests.tools.decision_times`.
+decision* divides the time of each call that resulted in decisions by their number, and shows the
+median of these quotients (of all calls if none resulted in a decision). The other columns are mean,
+95 % quantile and maximum of the times of all calls. If a controller consults others, their time is
+not counted for it. Rows such as *only age* are PPS `lexicographic` with that criterion first, ties
+broken at random. In the row *all pooled orders count*, PPS considers all orders in the pools of POA
+`queue`, not only those that a pod completes. This page is written by
+`python -m tests.tools.decision_times`.
 
 For every rule, the median should stay below one millisecond. The benchmarks
 (`pytest -m benchmark tests/control`), which time a single decision repeatedly, require the same.
@@ -196,8 +199,8 @@ def page(frame: pd.DataFrame, share: Mapping[str, float]) -> str:
         HEAD,
         f"With the default rules, decisions take {share['decisions']:.0%} of the wall time of such "
         f"a run (one simulated hour), path planning {share['planning']:.0%}, and everything else "
-        f"{rest:.0%}.\n",
-        "| problem | rule | calls | decisions | median, decision | mean, call | 95 % | max |",
+        f"{rest:.0%} (each rounded).\n",
+        "| problem | rule | calls | decisions | median, decision | mean, call | 95 %, call | max, call |",
         "|---|---|---:|---:|---:|---:|---:|---:|",
     ]
     for row in frame.to_dict("records"):
