@@ -135,7 +135,7 @@ travel       | real  | P S | cost of bringing a pod to a station
 available    | flag  | P   | whether a pod may be called
 inbound      | whole | P   | station that a pod is on its way to, or -1
 open_units   | whole | S K | units that orders at a station still need, per SKU
-fetch?       | real  | R P | cost for a robot to reach a pod; absent: robots are not decided
+fetch?       | real  | R P | cost for a robot to reach a pod; without it, robots are not decided
 robot_pod?   | whole | R   | pod that a robot is bound to, or -1
 worth?       | real  | O   | extra reward for giving an order its first slot
 may_call?    | flag  | S   | whether pods may be called to a station
@@ -433,7 +433,7 @@ def described(family: str) -> str:
         for field in fields:
             kind = "/".join(field.texts) if field.texts else field.kind
             shape = f"({', '.join(field.shape.split())})" if field.shape else ""
-            optional = ", may be absent" if field.optional else ""
+            optional = " (optional)" if field.optional else ""
             name = f"`{part}.{field.name}`"
             lines.append(f"| {name} | {kind} | {shape} | {field.meaning}{optional} |")
     return "\n".join(lines)

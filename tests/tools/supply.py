@@ -116,7 +116,7 @@ def collected() -> list[Part]:
             told = pages[name, version]
             parts.append(Part(ecosystem, name, version, told, "page of the viewer"))
             continue
-        purpose = "runs with rmfs" if name in needed else "extras and development"
+        purpose = "run time" if name in needed else "extras and development"
         parts.append(Part(ecosystem, name, version, licence_of(name), purpose))
     return parts
 
@@ -262,11 +262,11 @@ def known_weaknesses() -> str:
     )
     paragraph = f"""Known vulnerabilities: no advisory applies. PyPI was queried on {days} and
 listed none for the locked versions of {len(clear)} of the {len(rows)} Python packages. PyPI only
-answers for the newest version of a package, so there is no answer for {", ".join(untold)}. The
-locked versions were also compared with stored advisories: {crates} on the crates, from a copy of
-the RustSec database of June 2026, and {packages} from the PyPA database, which are the most recent
-ones for some packages, from 2021 to 2023. `python -m tests.tools.supply --ask` queries PyPI
-again."""
+answers for the newest version of a package. The other {len(untold)} locked versions are older, so
+there is no answer for them: {", ".join(untold)}. All locked versions were also compared with stored
+advisories: {crates} on the crates, from a copy of the RustSec database of June 2026, and {packages}
+on Python packages, published from 2021 to 2023, from the PyPA database. `python -m
+tests.tools.supply --ask` queries PyPI again."""
     return textwrap.fill(paragraph, 100, break_long_words=False, break_on_hyphens=False)
 
 
@@ -284,13 +284,16 @@ licence. The file `docs/sbom.cdx.json` contains the same list as a bill of mater
 network.
 
 Packages are installed separately, with two exceptions. The compiled core is linked with the Rust
-crates below. The page of the viewer contains three.js and uPlot. Their licences are in
+crates below. The page of the viewer contains three.js and uPlot. The licences of these two are in
 `rmfs/view/static/notices.txt`, which is part of the wheel, and at the top of the page's script, so
 exported pages contain them as well.
 
+The last column states what needs a package: the compiled core, the page of the viewer, every
+installation at run time, or only an extra or development.
+
 {known_weaknesses()}
 
-| package | version | licence | used for |
+| package | version | licence | needed for |
 |---|---|---|---|
 {rows}
 """
