@@ -220,8 +220,8 @@ little, so its interval covers slightly less than stated; begin with ten seeds r
 
 The selection of the best of five arms (procedure KN) was tested in its hardest case, in which the
 best arm is better by exactly the smallest difference worth detecting. The selection was
-correct in {right:.3f} of the experiments (nominal: 0.95). It took {taken:.0f} runs on average, all five arms
-together.
+correct in {right:.3f} of the experiments (nominal: 0.95). On average, it took {taken:.0f} runs of
+all five arms together.
 """
 
 

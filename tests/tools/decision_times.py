@@ -200,7 +200,8 @@ def page(frame: pd.DataFrame, share: Mapping[str, float]) -> str:
         f"With the default rules, decisions take {share['decisions']:.0%} of the wall time of such "
         f"a run (one simulated hour), path planning {share['planning']:.0%}, and everything else "
         f"{rest:.0%} (each rounded).\n",
-        "| problem | rule | calls | decisions | median, decision | mean, call | 95 %, call | max, call |",
+        "| problem | rule | calls | decisions "
+        "| median, decision | mean, call | 95 %, call | max, call |",
         "|---|---|---:|---:|---:|---:|---:|---:|",
     ]
     for row in frame.to_dict("records"):
