@@ -22,8 +22,8 @@ class PerSide(Strict):
 
     west: Amount = Field(0, description="on the side with the smallest x")
     east: Amount = Field(0, description="on the side with the largest x")
-    south: Amount = Field(0, description="on the side with the largest y")
-    north: Amount = Field(0, description="on the side with the smallest y")
+    south: Amount = Field(0, description="on the side with the largest y (top of a picture)")
+    north: Amount = Field(0, description="on the side with the smallest y (bottom of a picture)")
 
     @property
     def total(self) -> int:

@@ -36,12 +36,15 @@ HEAD = """\
 
 <!-- written by python -m tests.tools.claims -->
 
-The numbers that we claim, each with the command that reproduces it. The *number* is the mean over
-seeds, with the half width of its 95 % confidence interval if there is one; it is read from the
-*file*, a table in `results/published`. The *input hash* identifies the design: its arms, its seeds
-and the content of all inputs. The provenance file beside the table holds the full hash, the runs
-and the version of the code. If a file name contains `-reference`, the layout is RAWSim-O's own
-([papers](papers.md)). The [glossary](glossary.md) explains the terms.
+This page lists the numbers that we claim and the commands that reproduce them. The *number* is the
+mean over seeds, with the half width of its 95 % confidence interval if there is one; it is read
+from the *file*, a table in `results/published`. A number *against* something is the difference to
+it. The *input hash* identifies the design: its arms, its seeds and the content of all inputs. The
+provenance file beside the table contains the full hash, the runs and the version of the code.
+
+Figures 5a and 5b and section 4 are those of Merschformann, Xie, Li (2018). If a file name contains
+`-reference`, the layout is RAWSim-O's own ([papers](papers.md)). The [glossary](glossary.md)
+explains the terms; *small*, *default* and *large site* are the shipped layouts of these names.
 
 | claim | number | command | input hash | file |
 |---|---|---|---|---|
