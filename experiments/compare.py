@@ -282,7 +282,10 @@ MAIN = (
 def chosen_columns(
     comparison: Comparison, columns: Sequence[str], *, everything: bool
 ) -> list[str]:
-    """Return the requested columns; by default all that differ (`everything`) or the main ones.
+    """Return the columns to show.
+
+    These are the requested columns. If there are none, they are all reproducible columns that
+    differ (`everything`), or the main ones.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Complete plots from results, which arrange the figures."""
+"""Complete plots from results, composed of the functions in `figures`."""
 
 from __future__ import annotations
 

@@ -33,11 +33,11 @@ PARTS = ("layout", "scenario", "controllers")
 """The three inputs of a run."""
 
 MOST_ARMS = 100_000
-"""Number of arms that a file may list."""
+"""Maximum number of arms in a file."""
 MOST_COMBINATIONS = 1_000_000
-"""Number of combinations that the levels of factors may have."""
+"""Maximum number of combinations of the levels of factors."""
 LARGEST_MIB = 16
-"""Size limit of a file of arms."""
+"""Maximum size of a file of arms, in MiB."""
 
 Overrides = list[tuple[list[str], Any]]
 

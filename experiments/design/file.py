@@ -69,7 +69,7 @@ class Best(Strict):
         return self
 
     def better(self) -> Goal:
-        """Return the goal."""
+        """Return whether the column is maximised or minimised."""
         return _goal(self.by, self.goal)
 
 
@@ -103,7 +103,7 @@ class Select(Strict):
         return self
 
     def better(self) -> Goal:
-        """Return the goal."""
+        """Return whether the column is maximised or minimised."""
         return _goal(self.column, self.goal)
 
 
@@ -212,7 +212,7 @@ class DesignFile(Strict):
         return self
 
     def seeds_of(self, stage: Stage | None = None) -> list[int]:
-        """Return the seeds of every arm, in a stage or by default."""
+        """Return the seeds that every arm gets in a stage: its own, or else those of the design."""
         for given in (stage, self):
             if given is not None and given.seeds is not None:
                 return given.seeds

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.design.arms import Arm
 
 EXCHANGES = 10_000
-"""Maximum number of exchanges. In practice, no exchange improves the choice long before that."""
+"""Maximum number of exchanges; in practice, the search ends earlier, at a local optimum."""
 
 IMPROVEMENT = 1e-9
 
@@ -61,7 +61,7 @@ def main_effects(levels: Sequence[Sequence[object]]) -> NDArray[np.float64]:
 
 
 def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]:
-    """Choose rows of a model matrix that together are D-optimal, by exchanges.
+    """Choose rows of a model matrix by exchanges that increase the determinant of the information.
 
     Parameters
     ----------

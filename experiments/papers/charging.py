@@ -8,8 +8,8 @@ many more these are than without batteries. `--rules` compares every rule of cha
 and its optimiser with robots that need no energy, and with the rule `threshold`, paired by seed. It
 uses the design `charging-rules` or, with `--demand`, `charging-demand`, in which periods of high
 and low demand alternate. For comparison, Zou et al. (2018, doi 10.1016/j.ejor.2017.12.008) report
-more than 15 % more robots with battery recovery than without, and that swapping is up to 4.88 %
-better than plug-in charging.
+that more than 15 % more robots are needed with battery recovery than without, and that swapping is
+up to 4.88 % better than plug-in charging.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Figure 5a: a PSA rule exchanged in the middle of a day (Merschformann, Xie, Li 2018).
 
 The paper shows one run of 24 h in which random storage is replaced by nearest storage: from then
-on, the robots drive less and complete more orders. Here ten seeds are run on a layout of the size
-as RAWSim-O's MaTiMilli, together with arms that keep either rule. The effect of the exchange is the
-difference in differences, paired by seed: second half minus first half, with the exchange minus
-without it.
+on, the robots drive less and complete more orders. Here ten seeds are run on a layout of the same
+size as RAWSim-O's MaTiMilli, together with arms that keep either rule. The effect of the exchange
+is the difference in differences, paired by seed: second half minus first half, with the exchange
+minus without it.
 
 With `--reference DIR` (the public instances of RAWSim-O) the original layout
 `DIR/mati/MaTiMilli.xinst` is used instead; the names of published files then end in `-reference`.

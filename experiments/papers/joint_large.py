@@ -2,9 +2,10 @@
 
 Published exact models cannot be solved at this size. The best rules and HADGS are compared with the
 joint controllers of rmfs, with whole and with split orders, for a backlog and for orders that
-arrive over time. Published heuristics for a site of this size (with another layout and other
-orders, so not the same instance) pick 6,341 units in 2 h with 0.211 s per decision, and the best
-one 8,318 with 0.066 s, which is 96 % of the stations' capacity. The study takes about 0.3 CPU
+arrive over time. For a site of this size (with another layout and other orders, so not the same
+instance), the published results are 6,341 units in 2 h with 0.211 s per decision for HADGS, and
+8,318 units with 0.066 s per decision for the best heuristic, which is 96 % of the stations'
+capacity. The study takes about 0.3 CPU
 hours.
 """
 

@@ -141,8 +141,8 @@ def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[floa
 
     The result has one value per seed, nan if nothing was split. One picker works at each pick
     station. Splitting saves the share `1 - whole / split` of the pickers' time, where `whole` and
-    `split` are units per hour. For every tote of an order beyond the first, it costs a packer the
-    time that is returned.
+    `split` are units per hour. The result is the saved time divided by the number of additional
+    totes.
 
     Parameters
     ----------

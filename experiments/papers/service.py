@@ -1,12 +1,11 @@
 """Orders on time: rules compared with an optimiser that considers due times.
 
 The study uses the small site with tight, medium and slack due times. The optimiser is TA planning
-with tardiness in its objective (`late_s`). It is compared with the same optimiser with its
-computing time charged (pacing `work`), with its start rule, and with planning that ignores due
-times. The study publishes means, and differences of on-time shares in percentage points, paired by
-seed: to the best of the rules, which is selected from the same runs and thus favoured, and to the
-start rule. `--priorities` uses three classes of orders with different weights, and shows
-differences by class.
+with tardiness in its objective (`late_s`), with and without its computing time charged (pacing
+`work`). The study publishes means, and differences of the optimiser's on-time shares in percentage
+points, paired by seed: to the best of the rules, which is selected from the same runs and thus
+favoured; to the start rule; and to planning that ignores due times. `--priorities` uses three
+classes of orders with different weights, and shows differences by class.
 """
 
 from __future__ import annotations

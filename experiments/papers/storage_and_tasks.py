@@ -2,11 +2,10 @@
 
 Most arms replace only one of the two rules by a model. The literature finds that storage locations
 and tasks matter little for throughput (Merschformann, Lamballais, de Koster, Suhl 2019); they
-affect the driving. Therefore the fleet is small, so that
-driving is the bottleneck, and metres per unit are shown with units, lines and orders per hour.
-Bundles per hour are shown as well, because storing fewer bundles frees robots for a while. Each
-kind of demand has its own tables: means, differences to the rules, and the gain of each model over
-its own start rule, paired by seed.
+affect the driving. Therefore the fleet is small, so that driving is the bottleneck, and metres per
+unit are shown with units, lines and orders per hour. Bundles per hour are shown as well, because
+storing fewer bundles frees robots for a while. Each kind of demand has its own tables: means,
+differences to the rules, and the gain of each model over its own start rule, paired by seed.
 """
 
 from __future__ import annotations

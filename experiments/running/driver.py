@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.store import Store
 
 ATTEMPTS = 3
-"""Number of attempts at a run whose worker dies without an error."""
+"""Maximum number of attempts at a run whose worker dies without an error."""
 
 PATIENCE_S = 1.0
 """Maximum time to wait for the engine before progress is reported, in s."""
@@ -46,7 +46,7 @@ class Watcher(Protocol):
         """Receive a remark that is worth a line of output."""
 
     def tick(self) -> None:
-        """Note that some time has passed without a run that ended."""
+        """Update the display; called about every `PATIENCE_S` or more often."""
 
 
 class Silent:

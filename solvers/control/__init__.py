@@ -1,1 +1,4 @@
-"""Controllers that use models: they ask questions and turn the solutions into decisions."""
+"""Controllers that use models: they ask optimisers questions, and turn the answers into decisions.
+
+A question is a decision problem at one instant, stated as the input of a model.
+"""

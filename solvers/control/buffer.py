@@ -1,4 +1,4 @@
-"""Limits how often an optimiser is asked."""
+"""Limit on the frequency of questions to an optimiser."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Buffer:
         self._wanted = False
 
     def is_over(self, wanted: bool = True) -> bool:
-        """Return whether to ask now; if it is too early, `next_event_s` says when.
+        """Return whether to ask now; if it is too early, `next_event_s` becomes the time to ask.
 
         Parameters
         ----------
@@ -51,5 +51,5 @@ class Buffer:
 
     @property
     def next_event_s(self) -> float:
-        """Return when the optimiser may be asked again if there is something to ask; else inf."""
+        """Return when a postponed question may be asked, in s; inf if no question is postponed."""
         return self._asked_s + self._buffer_s if self._wanted else inf

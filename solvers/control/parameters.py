@@ -14,7 +14,7 @@ class BufferParameters(Parameters):
     """How often the optimiser is asked."""
 
     buffer_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Minimum seconds between two questions, during which decisions are collected."""
+    """Minimum seconds between two questions, so that one question covers several decisions."""
 
 
 class SearchParameters(BufferParameters):

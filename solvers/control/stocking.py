@@ -76,7 +76,7 @@ class StockingParameters(SearchParameters):
     """Solution method: HiGHS (at its root node), CP-SAT, rounding of the relaxation, or the greedy
     rule."""
     buffer_s: NotNegative = 30.0
-    """Minimum seconds between two questions, during which decisions are collected."""
+    """Minimum seconds between two questions, so that one question covers several decisions."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.05
     """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     gap: NotNegative = 0.01
@@ -118,7 +118,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         self._buffer = Buffer(view, parameters.buffer_s)
 
     def next_event_s(self) -> float:
-        """Return when the optimiser may be asked again if there is something to ask; else inf."""
+        """Return when a postponed question may be asked, in s; inf if no question is postponed."""
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Told]:

@@ -35,8 +35,8 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
     forecast of the number of robots needed for work. Over `slots` time slots, it minimises the time
     for which robots are missing at work plus the robot time that later charging will take. Robots
     whose stay is due are sent when they are free; charging robots stay as long as the current plan
-    says. Until the first answer, and after a failure, the rule `threshold`
-    applies, with `below_share` and `until_share`.
+    says. Until the first answer, and after a failure, the rule `threshold` applies, with
+    `below_share` and `until_share`.
     """
 
     parameters_model = ScheduleParameters

@@ -28,7 +28,8 @@ class ScheduleParameters(LevelParameters):
     longest: Count = 7
     """Maximum length of a stay in slots."""
     worth: NotNegative = 1.15
-    """Value of energy: robot time per time in which the most powerful place supplies the energy."""
+    """Value of energy: the robot time that it is worth, as a multiple of the time in which the most
+    powerful place supplies it."""
     idle: Share = 0.6
     """Cost of time away from work of a robot that is not needed, as a share of the cost of time for
     which a robot is missing."""

@@ -42,12 +42,12 @@ class JointParameters(SearchParameters):
     """Whether pods are called only for stations with less work under way than the horizon, whatever
     their orders lack. This prevents queues at one station while another runs out of work."""
     buffer_s: NotNegative = 3.0
-    """Minimum seconds between two questions, during which decisions are collected."""
+    """Minimum seconds between two questions, so that one question covers several decisions."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
     """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     reward_s: NotNegative = 15.0
-    """Value of each additional order (if orders are split: line) of a visit, in seconds of a
-    robot."""
+    """Value of each additional order (if orders are split: line) that a visit serves, in seconds
+    of a robot."""
     unit_s: NotNegative = 0.0
     """Additional value of each unit of an order rewarded by `reward_s`, in seconds of a robot."""
     visit_s: NotNegative = 60.0
@@ -57,10 +57,10 @@ class JointParameters(SearchParameters):
     station exceeds that of the station with least work. This spreads work over stations and their
     pickers."""
     age_reward: NotNegative = 0.005
-    """Additional value of assigning an order per second that it has waited, times the weight of its
-    class."""
+    """Additional value of assigning an order, in seconds of a robot, per second that the order has
+    waited, times the weight of its class."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 1
-    """Slots of each station reserved for what the pod at its head can serve."""
+    """Number of slots per station that are reserved for orders served by the pod at its head."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 20
     """Steps of the search for a bound on the value of each decision. The bound is only recorded.
     More steps improve it; they do not count as work."""

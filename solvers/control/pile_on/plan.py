@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """An item planned for a station, and the optimiser's call that planned it (or None: a rule)."""
+    """An item planned for a station, and the question whose answer planned it (None: a rule)."""
 
     item: Item
     call: Call | None
 
 
 class Called(NamedTuple):
-    """The optimiser's call that called a pod (None: a rule), and the robot for it (-1: any)."""
+    """The question whose answer called a pod (None: a rule), and the robot for it (-1: any)."""
 
     call: Call | None
     robot: int = -1
@@ -52,7 +52,7 @@ class Plan:
     view
         The world.
     kept_slots
-        Slots of each station reserved for what the pod at its head can serve.
+        Number of slots of each station that are reserved for orders served by the pod at its head.
     later
         Whether items may be assigned while pods for some of their lines are still to come.
     split_orders
@@ -101,7 +101,7 @@ class Plan:
         items
             Items behind the indices of the solution.
         call
-            The call of the solution; None: the heuristic.
+            The question that the solution answers; None: the heuristic.
         """
         pod_station, pod_robot = (np.asarray(solution[k]) for k in ("pod_station", "pod_robot"))
         for pod in np.flatnonzero(pod_station >= 0).tolist():

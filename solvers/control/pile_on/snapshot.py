@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from rmfs.world.stations import PickStation
 
 UNREACHABLE_S = 1e5
-"""Time used where there is no path."""
+"""Time used where there is no path, in s."""
 
 
 @dataclass(frozen=True)

@@ -51,13 +51,14 @@ class PileOnTasksParameters(JointParameters):
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
     whenever a slot can be filled, as in M1G."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Slots of each station reserved for what the pod at its head can serve."""
+    """Number of slots per station that are reserved for orders served by the pod at its head."""
     reward_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 40.0
-    """Value of each additional order of a visit, in seconds of a robot."""
+    """Value of each additional order that a visit serves, in seconds of a robot."""
     visit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
     """Cost of a visit in addition to the trips, in seconds of a robot."""
     age_reward: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Additional value of assigning an order per second that it has waited."""
+    """Additional value of assigning an order, in seconds of a robot, per second that the order has
+    waited, times the weight of its class."""
     replenishment_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.33
     """Maximum share of the robots working for replenishment stations at a time; at least one
     robot."""
@@ -87,9 +88,9 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
 
     Decisions outside M1G are made by rules. A robot with a pod continues while the pod can serve
     its station (or, optionally, another pick station nearby), and then parks it where PSA says. Up
-    to a share of the robots bring pods to replenishment stations, the nearest station with work
-    first, with pods chosen by PPS lexicographic; the others rest. If the optimiser fails, pod match
-    decides.
+    to `replenishment_share` of the robots bring pods to replenishment stations: each goes to the
+    nearest one with work, with a pod chosen by PPS lexicographic. The others rest. If the optimiser
+    fails, pod match decides.
     """
 
     parameters_model = PileOnTasksParameters
@@ -127,7 +128,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         self._changed |= asks and (trigger is not Trigger.NEW_ORDER or bool(self.view.resting))
 
     def next_event_s(self) -> float:
-        """Return when the optimiser may be asked again if there is something to ask; else inf."""
+        """Return when a postponed question may be asked, in s; inf if no question is postponed."""
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Decision]:

@@ -36,23 +36,24 @@ class PlanningParameters(SearchParameters):
     """Steps of the search per plan, for each station that is planned; default: 75 times the number
     of pick stations of the site, as plans of many stations take longer to improve."""
     buffer_s: NotNegative = 1.0
-    """Minimum seconds between two questions, during which decisions are collected."""
+    """Minimum seconds between two questions, so that one question covers several decisions."""
     horizon_s: NotNegative = 60.0
     """Seconds of work on pods under way below which a station is sent another pod."""
     unit_s: NotNegative = 10.0
     """Value of a unit served, in seconds of a robot."""
     order_s: NotNegative = 5.0
-    """Value of an order closed, in seconds of a robot."""
+    """Value of completing an order, in seconds of a robot."""
     age_reward: NotNegative = 0.002
-    """Additional value of closing an order per second that it has waited."""
+    """Additional value of completing an order without a slot, in seconds of a robot, per second that
+    the order has waited."""
     late_s: NotNegative = 0.0
-    """Additional value of closing an order that is due, in seconds of a robot, times the weight of
-    its class. Before the due time it falls by the factor e for every `late_within_s` left. As later
-    visits count less (`decay`), this is the price of tardiness (apparent tardiness cost,
-    Vepsalainen and Morton 1987). 0: due times do not count."""
+    """Additional value of completing an order that is due, in seconds of a robot, times the weight
+    of its class. Before the due time, the value falls by the factor e for every `late_within_s`
+    left. As later visits count less (`decay`), this is the price of tardiness (apparent tardiness
+    cost, Vepsalainen and Morton 1987). 0: due times do not count."""
     late_within_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 300.0
-    """Time in seconds within which the value `late_s` falls by the factor e; about the time from a
-    plan to its last visit."""
+    """Time in seconds within which the value `late_s` falls by the factor e. It should be about as
+    long as the time from a plan to its last visit."""
     open_s: NotNegative = 60.0
     """Additional value of a line whose order already has a slot, which keeps plans stable and frees
     slots."""

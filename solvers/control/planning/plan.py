@@ -104,7 +104,7 @@ class Plan:
             orders.sort(key=lambda one: one.sequence)
 
     def call(self, station: int) -> Call | None:
-        """Return the optimiser's call that produced the plan of a station; None: the start rule."""
+        """Return the question whose answer is the plan of a station; None: the start rule."""
         return self._call[station]
 
     def keys_of(self, stations: Sequence[int]) -> set[tuple[int, int]]:

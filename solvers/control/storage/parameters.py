@@ -15,6 +15,6 @@ class StorageParameters(BufferParameters):
     """Parameters of the forecast of visits."""
 
     horizon_s: Positive = 3600.0
-    """Horizon of the forecast of visits: about as long as pods stay where they are stored."""
+    """Horizon of the forecast of visits, in seconds: about as long as pods stay stored."""
     refresh_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
     """Seconds after which the forecast is recomputed."""

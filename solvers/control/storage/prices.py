@@ -70,9 +70,9 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
     Every `period_s`, pods are classified by expected visits, and a convex program determines how
     many pods of each class should be stored in each zone; it includes the delay by congestion. The
     price of a place, a dual price of this program, is the time that one more place in its zone
-    would save per hour. A pod goes to the empty place with the
-    least sum of the trips there and away, the delay, and the price for the expected duration of its
-    stay. Until the first answer, and after a failure, it goes to the nearest empty place.
+    would save per hour. A pod goes to the empty place with the least sum of the trips there and
+    away, the delay, and the price for the expected duration of its stay. Until the first answer,
+    and after a failure, it goes to the nearest empty place.
     """
 
     parameters_model = PricesParameters
