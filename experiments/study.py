@@ -83,7 +83,7 @@ class Study:
         by: str | None = None,
         confidence: float = 0.95,
     ) -> Table:
-        """Return paired differences to a baseline, seed by seed, with confidence intervals.
+        """Return paired differences (level minus baseline) with confidence intervals.
 
         Parameters
         ----------

@@ -253,7 +253,7 @@ def differences(
     method: Method = "t",
     by: str = "arm",
 ) -> Table:
-    """Return paired differences to a baseline, with p values corrected for multiple comparisons."""
+    """Return paired differences (arm minus baseline), with p values corrected by Holm's method."""
     from rmfs.experiments.statistics.paired import holm
 
     found = {

@@ -18,7 +18,7 @@ def ratio(amount: float, by: float) -> float:
 
 
 def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
-    """Return columns for mean, median and quartiles of some times in s, of which less is better."""
+    """Return columns for mean, median and quartiles of times in s; lower values are better."""
     told = {
         "mean": "Mean of",
         "median": "Median of",

@@ -99,5 +99,5 @@ def _pods(logs: Logs, order: pd.Series[int]) -> NDArray[np.int64]:
 
 
 def completed(frame: pd.DataFrame) -> pd.DataFrame:
-    """Keep the completed orders."""
+    """Return only the completed orders."""
     return frame[frame["completed_s"].notna()]

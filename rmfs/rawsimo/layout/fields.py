@@ -82,7 +82,7 @@ class Fields:
             return 0
 
     def switch(self, name: str) -> bool:
-        """Return a truth value; absent means false."""
+        """Return a truth value; an absent attribute means false."""
         text = self._element.get(name, "false")
         if text not in ("true", "false", "1", "0"):
             self._wrong(name, "true or false", text)

@@ -100,13 +100,13 @@ class Instance:
         return name in self._index[kind]
 
     def position(self, kind: str, name: int, where: str) -> int:
-        """Return the position of an id within its kind; 0, with an error added, if unknown."""
+        """Return the position of an id within its kind; 0 if it is unknown, which adds an error."""
         if not self.has(kind, name):
             self.problems.add(f"{where}: there is no {kind} {name}")
         return self._index[kind].get(name, 0)
 
     def waypoint(self, text: str | None, where: str) -> int:
-        """Return the position of a waypoint with an id; 0, with an error added, if unknown."""
+        """Return the position of a waypoint by its id; 0 if it is unknown, which adds an error."""
         try:
             name = int(text or "")
         except ValueError:

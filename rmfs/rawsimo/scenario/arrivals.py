@@ -235,7 +235,7 @@ def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[
 
 
 def steps(weights: Sequence[tuple[float, float]]) -> dict[str, Any]:
-    """Convert steps (start, weight) to scenario keys; without steps, return none of them."""
+    """Convert steps (start, weight) to scenario keys; without steps, there are no keys."""
     if not weights:
         return {}
     if weights[0][0] > 0:

@@ -44,8 +44,8 @@ class PlanningParameters(SearchParameters):
     order_s: NotNegative = 5.0
     """Value of completing an order, in seconds of a robot."""
     age_reward: NotNegative = 0.002
-    """Additional value of completing an order without a slot, in seconds of a robot, per second that
-    the order has waited."""
+    """Additional value of completing an order without a slot, in seconds of a robot, per second
+    that the order has waited."""
     late_s: NotNegative = 0.0
     """Additional value of completing an order that is due, in seconds of a robot, times the weight
     of its class. Before the due time, the value falls by the factor e for every `late_within_s`
