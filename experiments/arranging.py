@@ -38,7 +38,7 @@ def across(table: Table, plan: Plan, factor: str) -> Table:
     Parameters
     ----------
     factor
-        Its key or short name.
+        Key or short name of the factor.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Loading the inputs of an arm, and a digest of everything that determines its runs.
 
-The digest depends on content, not on text: it does not change if a comment is added to a file or a
-layout is renamed, but it does with one more robot, another rule or a changed SKU file. Runs are
+The digest depends on content, not on text: a comment in a file or another name of a layout does not
+change it, but one more robot, another rule or a changed SKU file does. Runs are
 stored under their digest, so that finished runs are found again and outdated ones are detected.
 """
 

@@ -1,7 +1,7 @@
 """Growth of the work of whole warehouses with the fleet: `rmfs traffic warehouses`.
 
-Layouts of the default kind have ten pods and 1/12 of a pick station per robot, a constant backlog,
-and are controlled by rules. Each run is a separate process, so that its memory can be measured.
+Layouts of the default kind have ten pods and 1/12 of a pick station per robot. The backlog is
+constant, and rules decide. Each run is a separate process, so that its memory can be measured.
 Times are processor times, which equal wall times on an idle core. Two windows are measured: the
 initial rush, and a later one in normal operation.
 """

@@ -19,7 +19,7 @@ class PickerLog:
     staff
         The pickers; None if the scenario has none.
     units
-        One row per picked unit, by time.
+        One row per picked unit, in order of time.
     presence
         Periods of presence of pickers at stations, in s.
     """

@@ -49,9 +49,9 @@ def check(
         End of the trace in microseconds; it must cover every robot up to then. Motions that reach
         it may end later or be cut short. Default: the start of the last motion.
     slow
-        Periods in which robots are limited to a share of their top speed, and outside of which they
-        are not. Default: the top speed of each run is that of the trace, if it does not exceed the
-        robot's.
+        Periods in which robots are limited to a share of their top speed; outside these periods,
+        they are not. Default: periods are not checked, and each run is limited to the top speed
+        stated in the trace, which must not exceed that of the robot.
 
     Raises
     ------

@@ -79,7 +79,7 @@ class CheckReport:
     Attributes
     ----------
     findings
-        Every violation, by time.
+        Every violation, in order of time.
     pieces
         Number of rows of the trace.
     pairs

@@ -31,7 +31,7 @@ BOXES_AT_ONCE = 50_000
 
 @dataclass(frozen=True, slots=True)
 class Boxes:
-    """Extents of motions within one time slab each, all of shape (B,).
+    """Extents of motions, each within one time slab; all arrays have shape (B,).
 
     Attributes
     ----------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def hours(ax: Axes) -> None:
-    """Label the time axis."""
+    """Label the time axis, in hours."""
     ax.set_xlabel("time (h)")
     ax.margins(x=0)
 

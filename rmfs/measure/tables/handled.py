@@ -77,7 +77,7 @@ def picks(logs: Logs) -> pd.DataFrame:
 
 
 def bundles(logs: Logs) -> pd.DataFrame:
-    """Make a row per bundle that was waiting or stored during the measured time, by arrival."""
+    """Make a row per bundle that was waiting or stored in the measured time, sorted by arrival."""
     frame = seen_bundles(logs).drop(columns="in_file")
     frame["turnover_s"] = frame["stored_s"] - frame["created_s"]
     frame["throughput_time_s"] = frame["stored_s"] - frame["assigned_s"]

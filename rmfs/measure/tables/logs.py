@@ -84,7 +84,7 @@ class Logs:
 
     @cached_property
     def busy(self) -> pd.DataFrame:
-        """Periods in which stations handled something, by station and time."""
+        """Periods in which stations handled something, sorted by station and time."""
         frame = framed(self.recorder.busy)
         return frame.sort_values(["station", "begin_s"], ignore_index=True)
 

@@ -74,7 +74,7 @@ HEAT = (
 
 
 def trips(logs: Logs) -> pd.DataFrame:
-    """Make a row per trip that ended during the measured time, by its end."""
+    """Make a row per trip that ended during the measured time, sorted by end."""
     told = logs.recorder.trips
     station = np.full(logs.layout.waypoints, -1)
     station[[one.waypoint for one in logs.layout.stations]] = np.arange(len(logs.layout.stations))

@@ -62,7 +62,7 @@ TOTES = (
 
 
 def parcels(logs: Logs) -> pd.DataFrame:
-    """Make a row per order that has left a pick station at least in part, by arrival.
+    """Make a row per order that has left a pick station at least in part, sorted by arrival.
 
     Orders packed before the measured time are left out.
     """

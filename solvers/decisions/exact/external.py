@@ -1,8 +1,8 @@
 """External solvers as commands, which read a program and write a solution file.
 
-None is required. A solver is given by its name, if its command is on the path, or as a command with
-the placeholders `{program}`, `{solution}` and `{seconds}`, which is split as by a shell but run
-without one. Its solution counts only if `checking` accepts it.
+No external solver is required. A solver is given by its name, if its command is on the path, or as
+a command with the placeholders `{program}`, `{solution}` and `{seconds}`. The command is split into
+words as in a shell, but run without a shell. A solution counts only if `checking` accepts it.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ LARGEST_EXACT = {"planning": 60_000}
 
 @dataclass(frozen=True)
 class Effort:
-    """Effort of the search.
+    """Limits of a search for better values and bounds.
 
     Attributes
     ----------
