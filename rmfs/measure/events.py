@@ -214,7 +214,7 @@ class EventLog(Observer):
             self._rows.extend(_row(now_us, due, -1, -1, -1, index, -1, due_s, -1))
 
     def order_cut(self, order: Order) -> None:
-        """Record that an order was cut."""
+        """Record that units of an order were cut because stock could not serve them."""
         self._add_order(self._now_s, Happening.ORDER_CUT, order)
         self._add_lines(self._now_s, order)
 

@@ -300,7 +300,7 @@ class Recorder(Observer):
         self.lifts.add(time_s, pod, robot)
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Record the call."""
+        """Count a call of a controller and its wall time; record the call if decisions were made."""
         try:
             asked = self.asked[problem]
         except KeyError:
@@ -313,11 +313,11 @@ class Recorder(Observer):
             self.calls.add(time_s, self.problems.index(problem), decisions, wall_s)
 
     def rule_decided(self, problem: str, time_s: float) -> None:
-        """Count the decision."""
+        """Count a decision that a controller with an optimiser made by its own rule."""
         self.by_rule[problem] = self.by_rule.get(problem, 0) + 1
 
     def optimiser_asked(self, call: Call) -> None:
-        """Track the call."""
+        """Record the question."""
         self.questions.append(call)
 
     def optimiser_answered(self, call: Call) -> None:

@@ -81,18 +81,18 @@ class Settings:
         return choices[word]
 
     def number(self, tag: str, default: float) -> float:
-        """Return a finite number."""
+        """Return the finite number in an element."""
         return default if tag not in self else self._number(tag, self.text(tag))
 
     def whole(self, tag: str, default: int) -> int:
-        """Return an integer."""
+        """Return the integer in an element."""
         number = self.number(tag, default)
         if number % 1:
             raise self.error(tag, f"must be a whole number (given: {number:g})")
         return int(number)
 
     def switch(self, tag: str, default: bool) -> bool:
-        """Return a truth value."""
+        """Return the truth value in an element."""
         return default if tag not in self else self._switch(tag, self.text(tag))
 
     def block(self, tag: str) -> Settings:

@@ -64,7 +64,7 @@ class OrderList:
     _bundles: tuple[Row, ...]
 
     def orders(self, skus: SkuSet) -> OrderStream:
-        """Return its orders, which have no due times.
+        """Return the orders of the list, which have no due times.
 
         Raises
         ------
@@ -80,7 +80,7 @@ class OrderList:
         return rows.builder.build()
 
     def bundles(self, skus: SkuSet, largest: float = math.inf) -> BundleStream:
-        """Return its bundles.
+        """Return the bundles of the list.
 
         Parameters
         ----------

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Exact:
-    """A program whose optimum is that of the question.
+    """A program whose optimal solutions are those of the question.
 
     Attributes
     ----------
