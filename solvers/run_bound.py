@@ -1,7 +1,8 @@
-"""The proven bound on the runs of a warehouse: its layout and SKUs as the model's input.
+"""The proven bound on units per hour in a warehouse, computed from its layout and SKUs.
 
 The input consists of kinematics, handling times and the capacity of pods, none of which depends on
-controllers, demand or seed. So one number holds for all runs of a layout with a set of SKUs.
+controllers, demand or seed. Therefore one number holds for all runs of a layout with the same SKUs
+and the same duration.
 """
 
 from __future__ import annotations

@@ -300,7 +300,7 @@ class Recorder(Observer):
         self.lifts.add(time_s, pod, robot)
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Count a call of a controller and its wall time; record the call if decisions were made."""
+        """Count a call of a controller and its wall time; record it if decisions were made."""
         try:
             asked = self.asked[problem]
         except KeyError:

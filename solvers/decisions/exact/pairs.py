@@ -1,4 +1,4 @@
-"""Programmes of the families that the models solve as assignments, as flows or by Clarabel."""
+"""Programs of the families that the models solve as assignments, as flows or by Clarabel."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ TABLE = "best.csv"
 LOCK = ".lock"
 OPTIMAL, OPEN = "optimal", "open"
 PROVEN = 1e-4
-"""Relative gap that counts as zero, as CP-SAT rounds costs to multiples of, say, 1/1024 s."""
+"""Relative gap that counts as zero, as CP-SAT rounds costs (for example to 1/1024 s)."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Row:
     Attributes
     ----------
     question
-        Its name.
+        Name of the question.
     family, size, load, moment
         Family, size, kind of demand and time at which it was drawn.
     value, bound
