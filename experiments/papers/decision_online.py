@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 SIZES = ("medium", "real", "double")
 
 
-def _planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]]:
-    """Plan with a number of steps per station that depends on the number of stations."""
+def planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]]:
+    """Return what is asked when planning: the number of steps per station, by that of stations."""
 
     def asked(decision: Decision) -> dict[str, Any]:
         stations = decision.sizes["S"]
@@ -51,8 +51,8 @@ def _routed(method: str, work_s: float) -> Callable[[Decision], dict[str, Any]]:
     return lambda decision: {"method": method, "limits": limits}
 
 
-def _searched(steps: int) -> Callable[[Decision], dict[str, Any]]:
-    """Route by neighbourhood search with a number of steps for each task."""
+def searched(steps: int) -> Callable[[Decision], dict[str, Any]]:
+    """Return what is asked when routing by neighbourhood search: the number of steps per task."""
 
     def asked(decision: Decision) -> dict[str, Any]:
         limits = Limits(iterations=steps * decision.sizes["T"])
@@ -63,16 +63,16 @@ def _searched(steps: int) -> Callable[[Decision], dict[str, Any]]:
 
 SETTINGS: Mapping[str, Mapping[str, Callable[[Decision], dict[str, Any]]]] = {
     "planning": {
-        "150 steps per station": _planned(lambda stations: 150),
-        "default: 75 steps per station, for each station": _planned(
+        "150 steps per station": planned(lambda stations: 150),
+        "default: 75 steps per station, for each station": planned(
             lambda stations: STEPS_PER_STATION * stations
         ),
-        "1,500 steps per station (`planning-split`)": _planned(lambda stations: 1500),
+        "1,500 steps per station (`planning-split`)": planned(lambda stations: 1500),
     },
     "sequence": {
         "insertion": lambda decision: {"method": "greedy"},
-        "50 steps per task": _searched(50),
-        "default: 200 steps per task": _searched(STEPS_PER_TASK),
+        "50 steps per task": searched(50),
+        "default: 200 steps per task": searched(STEPS_PER_TASK),
         "CP-SAT, 0.01 s": _routed("cp_sat", 0.01),
         "column generation, 0.6 s": _routed("columns", 0.6),
     },

@@ -9,9 +9,10 @@ gaps come with more units, fewer late orders and less driving, the objective is 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -19,31 +20,31 @@ from scipy.stats import spearmanr
 
 from rmfs.errors import InputError
 from rmfs.experiments.papers.decision_library import LIBRARY
+from rmfs.experiments.papers.decision_online import planned, searched
 from rmfs.experiments.papers.study import command, done, parser
 from rmfs.experiments.statistics import interval
 from rmfs.experiments.tables import HALF, Table, rows_frame
 from rmfs.solvers.decisions.asking import asked_again
-from rmfs.solvers.decisions.files import read
+from rmfs.solvers.decisions.files import Decision, read
 from rmfs.solvers.decisions.library.table import Library
 from rmfs.solvers.decisions.profiling import primal_gap
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-
-    from rmfs.solvers.decisions.files import Decision
+from rmfs.solvers.models.tasks.sequence import STEPS_PER_TASK
 
 SOLVER = "solver"
 COLUMNS = ("units_per_h", "late_share", "distance_per_unit_m")
 GAP = "offline gap, %"
 
-ASKED: Mapping[str, tuple[str, Mapping[str, Any]]] = {
+Changes = Mapping[str, Any] | Callable[[Decision], Mapping[str, Any]]
+"""Changes to the settings of a question, which may depend on the question."""
+
+ASKED: Mapping[str, tuple[str, Changes]] = {
     "pile_on greedy": ("pile_on", {"method": "greedy"}),
     "pile_on hadgs": ("pile_on", {"method": "hadgs"}),
     "pile_on joint 0.002": ("pile_on", {"limits": {"deterministic_s": 0.002}}),
     "pile_on joint 0.05": ("pile_on", {"limits": {"deterministic_s": 0.05}}),
     "planning greedy": ("planning", {"method": "greedy"}),
-    "planning lns 10": ("planning", {"limits": {"iterations": 10}}),
-    "planning lns 100": ("planning", {"limits": {"iterations": 100}}),
+    "planning lns 10": ("planning", planned(lambda stations: 10)),
+    "planning lns 100": ("planning", planned(lambda stations: 100)),
     "placement greedy": ("placement", {"method": "greedy"}),
     "placement assignment": ("placement", {}),
     "stays greedy": ("stays", {"method": "greedy"}),
@@ -54,6 +55,7 @@ ASKED: Mapping[str, tuple[str, Mapping[str, Any]]] = {
     "balance flow": ("balance", {}),
     "sequence greedy": ("sequence", {"method": "greedy"}),
     "sequence cp_sat": ("sequence", {"method": "cp_sat"}),
+    "sequence lns": ("sequence", searched(STEPS_PER_TASK)),
     "replenishment greedy": ("replenishment", {"method": "greedy"}),
     "replenishment rounding": ("replenishment", {"method": "rounding"}),
     "replenishment highs": ("replenishment", {}),
@@ -96,7 +98,9 @@ def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
     gaps = []
     for row in library.rows.values():
         if (row.family, row.size) == (family, size):
-            found = asked_again(asked_otherwise(read(library.path(row)), changes))
+            decision = read(library.path(row))
+            asked = changes(decision) if callable(changes) else changes
+            found = asked_again(asked_otherwise(decision, asked))
             gaps.append(primal_gap(found.objective, row.value))
     return gaps
 

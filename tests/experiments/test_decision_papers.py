@@ -66,6 +66,16 @@ def test_offline_gaps_are_those_of_the_arms_method(library: Path) -> None:
     assert max(greedy) > 0.0
 
 
+def test_offline_searches_take_the_steps_of_the_controller() -> None:
+    """The controllers of the arms count steps per station or per task."""
+    sizes = {"planning lns 10": ("planning", "S", 10), "sequence lns": ("sequence", "T", 200)}
+    for arm, (family, size, steps) in sizes.items():
+        _, changes = offline_online.ASKED[arm]
+        assert callable(changes)
+        decision = sample(family, 0)
+        assert changes(decision)["limits"]["iterations"] == steps * decision.sizes[size]
+
+
 def test_correlations_are_paired_by_seed() -> None:
     """A seed that lifts all arms alike says nothing of the methods."""
     arms = ["placement greedy", "placement assignment"]
