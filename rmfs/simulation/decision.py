@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class ImpossibleError(ValueError):
-    """An answer is impossible; the message says why, and the question remains open."""
+    """An answer is impossible, or the question was answered before; the message says why."""
 
 
 class Asking(Protocol):

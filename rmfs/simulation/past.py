@@ -49,5 +49,5 @@ class PastOrders:
         self._scenario, self._skus, self._seed = scenario, skus, seed
 
     def __call__(self) -> list[OrderContent]:
-        """Draw them; see `past_orders`."""
+        """Draw the orders from before the run; see `past_orders`."""
         return past_orders(self._scenario, self._skus, self._seed)

@@ -88,7 +88,7 @@ class Traffic(Readings):
         return copy
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Self:
-        """Fork."""
+        """Copy the traffic; see `fork`."""
         return self.fork(memo)
 
     def to_bytes(self) -> bytes:
@@ -190,12 +190,12 @@ class Traffic(Readings):
             Delay in microseconds, not negative.
         begun
             Whether motion in progress may be postponed as well, as is necessary when real robots
-            outside the simulation are late. If it may not, and would have to be, nothing is
-            changed.
+            outside the simulation are late.
 
         Returns
         -------
-        Whether the plans were shifted.
+        Whether the plans were shifted. They are not shifted if `begun` is false and motion in
+        progress would have to be postponed, or if a move would have to wait for itself.
         """
         return self._core.delay(robot, by_us, begun)
 
@@ -256,7 +256,8 @@ class Traffic(Readings):
             Shortest and longest delay in microseconds, uniformly distributed.
         repair
             Whether a robot that a late robot makes wait is replanned, alone or ahead of the late
-            robot, if that is better for the two together.
+            robot, if the sum of the arrival times of the replanned robots decreases. Without effect
+            with rolling planners.
         seed
             Seed of the draws, below 2^64.
 
@@ -281,8 +282,8 @@ class Traffic(Readings):
 
         Returns
         -------
-        Whether the speed was changed. It is not changed if the robot is in motion, or if another
-        robot already in motion would have to wait for it.
+        Whether the speed was changed. It is not changed if the robot drives, lifts or sets down a
+        pod, or if another robot that is already driving would have to wait for it.
         """
         kind = int(self._layout.robot_kind[robot]) + level * len(self._layout.robot_kinds)
         return self._core.change_kind(robot, kind)

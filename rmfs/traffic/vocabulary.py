@@ -91,7 +91,8 @@ class CutOff(NamedTuple):
         Storage locations (waypoints) that are closed, or from which a pod cannot be carried to one
         of the remaining stations and back.
     stations
-        Stations (numbers) that are closed, or that no pod can reach or leave.
+        Stations (numbers) that are closed, or to which no pod can be carried from a storage
+        location and back.
     """
 
     storage: list[int]

@@ -40,7 +40,7 @@ class Violation:
     message: str
 
     def __str__(self) -> str:
-        """Return one line."""
+        """Return the violation in one line."""
         return f"{self.severity}: {self.element}: {self.message}"
 
 

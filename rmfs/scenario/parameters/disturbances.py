@@ -56,8 +56,8 @@ class LateMotions(Block):
     )
     repair: bool = Field(
         True,
-        description="whether to replan the robots that wait behind, alone or with higher "
-        "priority, where that is better",
+        description="whether to replan each robot that waits behind, alone or together with the "
+        "late robot, where the replanned robots then arrive earlier in total",
     )
 
     @pydantic.field_validator("most_s")
