@@ -55,11 +55,11 @@ class GraphMeasures:
     ----------
     to_station_mean_m, to_station_max_m
         Length in m of the shortest way from a storage location to the nearest pick station, mean
-        and maximum over the storage locations. Ways may lead through any waypoint; elevator rides
-        count as 0 m. None if there is no pick station, or none that can be reached.
+        and maximum over the storage locations that have such a way. Ways may lead through any
+        waypoint; elevator rides count as 0 m. None if there is no such storage location.
     bottlenecks
-        Waypoints outside queues whose closure would divide the floor into unconnected parts: the
-        articulation points of the undirected graph without queues.
+        Number of waypoints outside queues whose closure would divide the floor into unconnected
+        parts: the articulation points of the undirected graph without queues.
     """
 
     to_station_mean_m: float | None

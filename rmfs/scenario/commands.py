@@ -232,7 +232,7 @@ def sku_set_command(
 
 
 def summary(skus: SkuSet) -> str:
-    """Describe a SKU set in one line."""
+    """Return a line that describes a SKU set."""
     shares = sorted(skus.by_popularity.probabilities.tolist(), reverse=True)
     top = sum(shares[: max(1, len(shares) // 10)])
     smallest, largest = skus.bundle_space.min(), skus.bundle_space.max()

@@ -45,7 +45,7 @@ class InitialStock:
     share: float
 
     def contents(self, pods: int, skus: int) -> NDArray[np.int64]:
-        """Units of each SKU on each pod, shape (pods, skus)."""
+        """Return the units of each SKU on each pod, shape (pods, skus)."""
         units = np.zeros((pods, skus), dtype=np.int64)
         np.add.at(units, (self.pod, self.sku), self.units)
         return units

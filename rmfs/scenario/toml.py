@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def to_toml(model: pydantic.BaseModel) -> str:
-    """Write every parameter of a model, including defaults but not None.
+    """Return every parameter of a model as TOML, including defaults but not None.
 
     Reading the text back gives an equal model.
     """

@@ -47,7 +47,7 @@ class Copies(Protocol):
     """Creates copies of a saved state of a run."""
 
     def __call__(self, path: tuple[int, ...]) -> tuple[Trial, Any]:
-        """Return a copy with the random streams of this path, and one of what was saved with it."""
+        """Return a copy of the run with the random streams of `path`, and of all saved with it."""
         ...
 
 

@@ -45,7 +45,7 @@ class Violation:
 
 
 def at(layout: Layout, waypoint: int) -> str:
-    """Describe the position of a waypoint."""
+    """Return the position of a waypoint as text."""
     place = f"x {layout.x_m[waypoint]:g} m, y {layout.y_m[waypoint]:g} m"
     return place if len(layout.tiers) == 1 else f"{place}, tier {layout.tier[waypoint]}"
 

@@ -1,8 +1,8 @@
 """Stations within the storage area: pockets beside an aisle, each in place of a storage location.
 
-They are spread evenly over the blocks, and the kinds of station alternate. Robots enter a pocket
-from the aisle beside it and leave it to the same aisle. It leads nowhere else, so that no robot
-drives through it.
+They are spread evenly over the blocks, and the stations of each kind among the others. Robots enter
+a pocket from the aisle beside it and leave it to the same aisle. It leads nowhere else, so that no
+robot drives through it.
 """
 
 from __future__ import annotations

@@ -140,7 +140,7 @@ class _HighLow:
 
 
 def exponential_us(uniform: float, per_h: float) -> int:
-    """Convert a number in [0, 1) to the time until the next event of a Poisson process.
+    """Convert a number in [0, 1) to the time in us until the next event of a Poisson process.
 
     Rounding to whole microseconds hides the last bits of the logarithm, in which processors may
     differ.

@@ -17,7 +17,7 @@ class Site:
     Attributes
     ----------
     pick_stations, replenishment_stations
-        Numbers of stations, active or not.
+        How many stations there are, active or not.
     capacity
         Space units of all pods together.
     largest_pod

@@ -72,7 +72,8 @@ class PoissonReplenishment(_Drawn):
 class NeededReplenishment(_Replenishment):
     """Bundles arrive for SKUs of which too few units are left for further orders.
 
-    The units left are those in stock and on their way, minus those ordered.
+    The units left are those stored and those in bundles that wait or are on their way, minus those
+    ordered.
     """
 
     mode: Literal["needed"] = Field(

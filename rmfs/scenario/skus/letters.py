@@ -41,7 +41,7 @@ class Alphabet:
     words
         The words, each as the numbers of its letters.
     letters
-        All letters of the words, in order.
+        All letters of the words, in alphabetical order.
     colours
         Weight of each colour by its name.
     """

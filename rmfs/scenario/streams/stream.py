@@ -46,7 +46,8 @@ class OrderStream(_Frozen):
     classes
         Names of the classes of orders, if there are classes.
     priority
-        Class of each order, shape (n,); -1 if it has none. None if there are no classes.
+        Index of the class of each order, shape (n,); -1 if it has none. None if there are no
+        classes.
     """
 
     time_us: NDArray[np.int64]

@@ -22,7 +22,7 @@ class Chargers:
     Attributes
     ----------
     stations
-        Their numbers among all stations.
+        Their indices in the common numbering of all stations.
     """
 
     def __init__(self, layout: Layout, services: Sequence[Service], fleet: Traffic) -> None:
