@@ -79,7 +79,7 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
-    """Return the hashes of the inputs of a simulation, and its seed, by name."""
+    """Return hashes of the inputs and the pacing of a simulation, and its seed, by name."""
     return {
         "layout": digest(simulation.layout),
         "scenario": digest(simulation.scenario.model_dump(mode="json")),

@@ -37,8 +37,8 @@ _UNLIMITED = 2**62
 def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...]) -> Contents:
     """Return the function that draws the contents of the k-th order.
 
-    Only orders of a constant backlog depend on stock; all others are the same whatever happens in a
-    run. Orders that are words (`WordOrders`) never depend on stock.
+    Orders depend on stock only if the demand is a constant backlog. Otherwise they are the same
+    whatever happens in a run. Orders that are words (`WordOrders`) never depend on stock.
 
     Parameters
     ----------
