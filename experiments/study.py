@@ -211,8 +211,11 @@ def experiment(
         Additional measures, as for `rmfs.simulate`.
     keep
         Tables to keep of every run besides its footprint.
+    name
+        Name of the experiment.
     out
-        Folder for the results. Default: below `results`, with a name derived from the inputs.
+        Folder for the results. Default: below `results`, with a name derived from `name` and the
+        inputs.
     processes
         Number of parallel runs. Default: one per core.
     watcher

@@ -40,7 +40,7 @@ def limits(method: str, most: float) -> list[float]:
     method
         The method.
     most
-        The last limit, in the unit of the method.
+        Largest limit allowed, in the unit of the method.
     """
     if method in UNLIMITED:
         return [most]

@@ -27,7 +27,7 @@ def with_gaps(table: pd.DataFrame, best: Mapping[str, float] | None = None) -> p
     table
         Rows of `profiling.points`.
     best
-        Best known value by question. For questions without one: the best of the table.
+        Best known value by question, used unless the table contains a better one.
     """
     known = dict(best or {})
     sign = np.where(table["family"].isin(MAXIMISED), -1.0, 1.0)

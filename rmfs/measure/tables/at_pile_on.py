@@ -17,8 +17,8 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
     """Return the rate at which a station picks with a given pile-on if it never waits.
 
     Of the p units of a visit, all but the last occupy robot and station for max(T, K), where T is
-    `unit_transfer_s` and K is `unit_pick_s`. After the last, the robot leaves when K is over, the
-    next one arrives at least a change c later, and its first pick starts when T is over, too. A
+    `unit_transfer_s` and K is `unit_pick_s`. After the last, the robot leaves when K is over. The
+    next robot arrives at least a time c later (`change_s`), and picks when T is over, too. A
     visit therefore lasts at least (p - 1) max(T, K) + max(T, K + c). This is linear in p, so the
     mean pile-on gives a bound on the mean.
 

@@ -191,7 +191,7 @@ def answers(logs: Logs) -> pd.DataFrame:
 
 
 def controllers(logs: Logs) -> pd.DataFrame:
-    """Make a row per decision problem whose controller was asked in the measured time."""
+    """Make a row per decision problem whose controller was called in the measured time."""
     asked = dict(sorted(logs.recorder.asked.items()))
     calls = np.array([number for number, _ in asked.values()])
     wall_s = np.array([wall for _, wall in asked.values()])
