@@ -27,7 +27,7 @@ class Buffer:
         self._wanted = False
 
     def is_over(self, wanted: bool = True) -> bool:
-        """Return whether to ask now; if it is too early, `next_event_s` becomes the time to ask.
+        """Return whether to ask now; if it is too early, `next_event_s` is the time to ask.
 
         Parameters
         ----------
@@ -51,5 +51,5 @@ class Buffer:
 
     @property
     def next_event_s(self) -> float:
-        """Return when a postponed question may be asked, in s; inf if no question is postponed."""
+        """Return when a question may next be asked, in s; inf if an event has to occur first."""
         return self._asked_s + self._buffer_s if self._wanted else inf

@@ -118,7 +118,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         self._buffer = Buffer(view, parameters.buffer_s)
 
     def next_event_s(self) -> float:
-        """Return when a postponed question may be asked, in s; inf if no question is postponed."""
+        """Return when a question may next be asked, in s; inf if an event has to occur first."""
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Told]:

@@ -128,7 +128,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         self._changed |= asks and (trigger is not Trigger.NEW_ORDER or bool(self.view.resting))
 
     def next_event_s(self) -> float:
-        """Return when a postponed question may be asked, in s; inf if no question is postponed."""
+        """Return when a question may next be asked, in s; inf if an event has to occur first."""
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Decision]:

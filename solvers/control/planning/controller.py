@@ -97,7 +97,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             self._changed |= bool(view.resting) or free > _WORTH_A_PLAN
 
     def next_event_s(self) -> float:
-        """Return when a postponed question may be asked, in s; inf if no question is postponed."""
+        """Return when a question may next be asked, in s; inf if an event has to occur first."""
         return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
 
     def decide(self, consult: Consult) -> Iterator[Decision]:

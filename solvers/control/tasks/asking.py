@@ -73,7 +73,7 @@ class Asking(TaskAllocation[P]):
         """Yield the valid decisions of a solution; iterate over its parts by `call.left`."""
 
     def next_event_s(self) -> float:
-        """Return when a postponed question may be asked, in s; inf if no question is postponed."""
+        """Return when a question may next be asked, in s; inf if an event has to occur first."""
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Told]:

@@ -38,7 +38,7 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Assign robots to tasks; the answer has the `robot` of each, shape (T,), -1 for none."""
+    """Assign robots to tasks; the answer has the `robot` of each task, shape (T,), -1 for none."""
     data = question.data
     if question.method == "matching":
         found = matching.solve(data.pairs)

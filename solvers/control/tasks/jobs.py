@@ -64,10 +64,10 @@ class Job:
 def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) -> list[Job]:
     """Choose pods for every station, one after another.
 
-    The next pod of a station is the one whose value exceeds its trip time by most, or falls short
-    of it by least; ties go to the lowest number. At pick stations the value counts completed orders
-    and units of requests that earlier pods leave open, at replenishment stations bundles. Each pod
-    is chosen only once.
+    The next pod of a station is the one with the largest difference of value and trip time; ties go
+    to the lowest number. At pick stations, the value counts completed orders and units of requests
+    that earlier pods leave open; at replenishment stations, it counts bundles. Each pod is chosen
+    only once.
 
     Parameters
     ----------
