@@ -79,7 +79,7 @@ def plan(
     arms: Annotated[bool, typer.Option("--arms", help="List all arms.")] = False,
     pilot: Annotated[bool, typer.Option(help="Make short runs to estimate the time.")] = True,
 ) -> None:
-    """Check a design: print all its errors or, if there are none, its runs and their duration."""
+    """Check a design: print its errors or, if there are none, its arms, runs and estimated time."""
     from rmfs.experiments.complete import may_grow
     from rmfs.experiments.design.stages import schedule
     from rmfs.experiments.results import assigned, failed_pairs
@@ -157,7 +157,10 @@ def run(
 
 @app.command()
 def status(design: Made, out: Out = None) -> None:
-    """Show the progress of an experiment, and its failures."""
+    """Show the progress of an experiment, and its failures.
+
+    Exits with code 1 if runs failed.
+    """
     from rmfs.experiments.results import assigned, failed
     from rmfs.experiments.running.driver import progress_of
 

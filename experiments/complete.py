@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
-    """Describe the missing runs of an experiment, with counts; empty if all are finished.
+    """Describe the missing runs of an experiment, with counts; empty if it is complete.
 
     Parameters
     ----------

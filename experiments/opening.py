@@ -100,7 +100,7 @@ def shipped() -> Iterator[tuple[str, str]]:
 
 
 def made_below(folder: Path) -> Iterator[Opened]:
-    """Yield the experiments whose results are in a folder or its subfolders."""
+    """Yield the experiments whose results are in a folder or one of its direct subfolders."""
     from rmfs.experiments.design import planning
     from rmfs.experiments.store import Store
 

@@ -70,7 +70,7 @@ def measure(case: Case, seed: int) -> dict[str, float]:
     Returns
     -------
     Wall seconds of the simulation loop (`wall_s`), of planning (`planning_s`) and of decisions
-    (`decisions_s`), orders and units, and the seconds of the reference loop.
+    (`decisions_s`); orders completed; peak memory in MB; and the seconds of the reference loop.
     """
     loop_s = reference_loop()
     overrides = [(["scenario", "duration_s"], case.duration_s), (["scenario", "warmup_s"], 0.0)]

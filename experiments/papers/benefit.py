@@ -56,8 +56,7 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
 def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = COLUMNS) -> Table:
     """Return the means of every group of runs with intervals, decision times, shares and bounds.
 
-    The shares are those of decisions by optimisers and by start rules, and of stale and of failed
-    answers.
+    The shares are the four columns `*_decision_share` of the footprint.
 
     Parameters
     ----------
@@ -105,7 +104,7 @@ def gains(
     frame
         As `completed` returns it.
     groups
-        Columns within whose levels controllers are compared.
+        Columns; controllers are compared for each combination of their levels.
     baseline
         Level of `controllers` that the others are compared with.
     """
@@ -135,7 +134,7 @@ def of_optimiser(
         As `completed` returns it. Each level of `controllers` is compared with the level of that
         name plus `START`, if there is one.
     groups
-        Columns within whose levels controllers are compared.
+        Columns; controllers are compared for each combination of their levels.
     columns
         Measures to compare.
     """

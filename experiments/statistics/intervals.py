@@ -134,7 +134,7 @@ def require(frame: pd.DataFrame, *columns: str) -> None:
     Raises
     ------
     InputError
-        If the column is missing; the message names the most similar one.
+        If a column is missing; the message names similar ones.
     """
     import difflib
 

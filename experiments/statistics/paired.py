@@ -99,6 +99,11 @@ def against(
     -------
     One row per other arm: what `paired` returns, `p_holm` (Holm 1979, over all rows) and
     `direction`: "higher", "lower" or "unclear" at the level 1 - `confidence` after correction.
+
+    Raises
+    ------
+    InputError
+        If a column is missing, or the baseline has no results.
     """
     require(frame, by, column, pair)
     wide = frame.pivot_table(index=pair, columns=by, values=column, aggfunc="mean", sort=False)

@@ -23,7 +23,7 @@ def narrow_enough(values: Sequence[float], relative: float, confidence: float = 
     Parameters
     ----------
     relative
-        Required half width, as a share of the mean.
+        Required relative error of the mean.
     """
     if len(values) < 2:
         return False
