@@ -44,8 +44,8 @@ def change_s(layout: Layout, waypoint: int) -> float:
 
     The robot turns from the edge it arrived on to one that leads away, and clears the waypoint when
     it reaches the next one; only then may another enter the last edge before the waypoint. The
-    fastest robot is used, and runs that continue beyond these two edges pass their ends at full
-    speed.
+    time is the minimum over edges and kinds of robots; robots need not stop at the outer ends of
+    these two edges.
     """
     inward, outward = list(_edges_in(layout, waypoint)), list(_edges_out(layout, waypoint))
     if not inward or not outward:

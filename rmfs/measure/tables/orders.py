@@ -22,7 +22,7 @@ ORDERS = (
     Column("order", INTEGER, "", "Ordinal of arrival, from the start of the run"),
     Column("name", TEXT, "", "Name of the order in the file of orders; empty if it was drawn"),
     Column("priority", TEXT, "", 'Class of the order; empty unless orders.due.mode = "classes"'),
-    Column("station", INTEGER, "", "Pick station; -1 if not yet assigned"),
+    Column("station", INTEGER, "", "Pick station; -1 if not assigned"),
     Column("lines", INTEGER, "lines", "Order lines, without those cut to zero units"),
     Column("units", INTEGER, "units", "Units ordered"),
     Column("created_s", REAL, "s", "Arrival"),
