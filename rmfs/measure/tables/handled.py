@@ -28,8 +28,8 @@ PICKS = (
         "picker",
         INTEGER,
         "",
-        "Picker, as in the table of pickers; -1 if the scenario has no pickers. Then handling_s and "
-        "fatigue are empty, layer and face are -1, and error, noticed and turned are false",
+        "Picker, as in the table of pickers; -1 if the scenario has no pickers. Then handling_s "
+        "and fatigue are empty, layer and face are -1, and error, noticed and turned are false",
     ),
     Column("handling_s", REAL, "s", "Time for which the unit occupied the picker, rework included"),
     Column("layer", INTEGER, "", "Layer of the pod, 0 at the bottom; -1 if pods have none"),

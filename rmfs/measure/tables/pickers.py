@@ -38,7 +38,9 @@ PICKERS = (
         "share",
         "Mean fatigue at the start of picks; empty if there were none",
     ),
-    Column("fatigue_max", REAL, "share", "Greatest fatigue at the start of a pick"),
+    Column(
+        "fatigue_max", REAL, "share", "Greatest fatigue at the start of a pick; 0 without picks"
+    ),
     Column("errors", INTEGER, "units", "Units picked wrongly"),
     Column("errors_unnoticed", INTEGER, "units", "Wrongly picked units that were not noticed"),
 )

@@ -56,9 +56,9 @@ ROBOTS = (
             ("energy_wh", "Wh", "Energy drawn, less recovered braking energy"),
             ("charged_wh", "Wh", "Energy charged at chargers"),
             ("charging_s", "s", "Time at chargers"),
-            ("level_wh", "Wh", "Energy in the battery at the end"),
         )
     ),
+    Column("level_wh", REAL, "Wh", "Energy in the battery at the end; empty without batteries"),
 )
 
 
