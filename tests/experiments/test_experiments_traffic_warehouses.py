@@ -2,10 +2,12 @@
 
 import json
 
+import numpy as np
 import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
+from rmfs import Simulation
 from rmfs.errors import InputError
 from rmfs.experiments.traffic import warehouses
 from rmfs.experiments.traffic.commands import app
@@ -44,6 +46,34 @@ def test_the_smallest_site_proven_safe(tmp_path):
     made = json.loads((tmp_path / "scale-warehouses.md.provenance.json").read_text())
     assert made["check"] is True
     assert [site["robots"] for site in made["sites"]] == [125]
+
+
+def test_robots_that_stand_still_are_counted_in_every_window():
+    """A robot with work that neither moves nor is served for a whole window; others are not."""
+    parts = ("moving_s", "turning_s", "transfer_s", "served_s", "waiting_s")
+    stood, served, rested = np.eye(3) * warehouses.WINDOW_S
+    motion = dict.fromkeys(parts, np.zeros(3)) | {"waiting_s": stood, "served_s": served}
+    assert warehouses.standing_with_work(motion) == 1
+    assert warehouses.standing_with_work(motion | {"moving_s": stood}) == 0
+    assert warehouses.standing_with_work(motion | {"waiting_s": rested * 0}) == 0
+
+
+def test_windows_cover_the_run_from_its_start(monkeypatch):
+    def simulation():
+        return Simulation("small", set={"scenario.warmup_s": 1500.0, "scenario.duration_s": 1.0})
+
+    windows = []
+
+    def counted(motion):
+        windows.append(motion["distance_m"])
+        return len(windows)
+
+    monkeypatch.setattr(warehouses, "standing_with_work", counted)
+    made, again = simulation(), simulation()
+    assert warehouses.advance_by_windows(made, 1500.0) == 2
+    assert made.world.now_s == 1500.0
+    again.run_until(1200.0)
+    assert sum(windows) == pytest.approx(again.traffic.motion()["distance_m"])
 
 
 def test_no_site_of_that_size():
