@@ -106,7 +106,7 @@ def bound(
     files: Files,
     work: Annotated[float, typer.Option(min=0.0, help=WORK)] = 1.0,
 ) -> None:
-    """Prove bounds by Lagrangian prices, relaxation and search; the last line is the best bound."""
+    """Prove bounds by Lagrangian prices, relaxation and search; the last line states the best."""
     from rmfs.solvers.decisions.bounding import bounds
 
     for path in expanded(files):

@@ -37,8 +37,8 @@ def check(decision: Decision, found: Found) -> float:
     Raises
     ------
     WrongError
-        If a rule is broken, the stated objective is wrong, or the stated bound contradicts the
-        value.
+        If there are no values, a rule is broken, the stated objective is wrong, or the stated bound
+        contradicts the value.
     """
     if found.values is None:
         raise WrongError("values: there are none")
