@@ -1,4 +1,4 @@
-"""The work of one job: load, simulate, measure. Runs in a process of its own.
+"""The work of one job, in a process of its own: load, simulate, measure.
 
 The modules imported here are imported once, before the processes are forked.
 """

@@ -28,7 +28,7 @@ SEEDS, RESIDUAL, POOLED = "seeds", "residual", "interactions"
 """Names of rows that are not the effect of a factor or a pair of factors."""
 
 CROSS = " x "
-"""Separates the names of two factors in the name of their interaction."""
+"""Separator of the names of two factors in the name of their interaction."""
 
 NEGLIGIBLE = 1e-9
 """Largest share of a model column, unexplained by the others, that counts as rounding error."""

@@ -215,7 +215,7 @@ def _deciding_s(simulation: Simulation) -> float:
 
 
 def growth(frame: pd.DataFrame) -> dict[str, float]:
-    """Return, by rules, the work per robot-hour of the largest fleet over that of the smallest."""
+    """Return, for each set of rules, work per robot-hour of the largest over the smallest fleet."""
     grown = {}
     for rules, rows in frame.groupby("rules", sort=False):
         work = rows["CPU s per robot-hour"]

@@ -30,17 +30,18 @@ if TYPE_CHECKING:
 
 
 class PileOnControl(PickOrderAssignment[PileOnParameters]):
-    """Maintains a plan of orders for slots and pods for robots, which the model extends.
+    """Maintains a plan of orders that wait for slots and pods that wait for robots.
 
-    The model is asked, at most once per `buffer_s`, after the events in `triggers`: a station runs
-    out of work within the horizon, a pod reaches a station, or a slot is free for which nothing is
-    planned. It determines which orders go to which station, and which pods are called for them. It
-    also returns *prospects*: orders that the same pods can serve as soon as slots are free. Slots
-    and robots are served from this plan until parts of it become invalid.
+    The model extends the plan. It is asked, at most once per `buffer_s`, after the events in
+    `triggers`: a station runs out of work within the horizon, a pod reaches a station, or a slot is
+    free for which nothing is planned. It determines which orders go to which station, and which
+    pods are called for them. It also returns *prospects*: orders that the same pods can serve as
+    soon as slots are free. Slots and robots are served from this plan until parts of it become
+    invalid.
 
-    A robot sent for a station fetches the nearest of the pods called for this station. Heuristics
-    take over in three cases: pod match if the optimiser fails, and PPS lexicographic, with its
-    defaults, for replenishment and for open requests that no pod called or under way can serve.
+    A robot sent for a station fetches the nearest of the pods called for this station. If the
+    optimiser fails, pod match decides. For replenishment, and for open requests that no pod called
+    or under way can serve, PPS lexicographic with its defaults decides.
     """
 
     parameters_model = PileOnParameters
