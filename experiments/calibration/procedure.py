@@ -60,7 +60,7 @@ class Goal:
     low, high
         Levels between which the level sought lies.
     confidence
-        Probability with which the mean is within the tolerance. Default 0.95.
+        Required probability that the mean is within the tolerance. Default 0.95.
     search_seeds
         Number of seeds at each level of the search. It is doubled as long as the target does not
         lie between the means at both ends of the range. Default 4.

@@ -159,10 +159,11 @@ def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
         Mean offline gap by arm.
 
     Returns
-    ------- One row per family: the number of arms, their largest gap, and the rank correlation of
-    each measure with the gap. For the correlation, the mean of the measure over the family's arms
-    with the same seed is subtracted first. With two arms, the correlation shows only the sign of
-    the effect, and whether it is the same for all seeds.
+    -------
+    One row per family: the number of arms, their largest gap, and the rank correlation of each
+    measure with the gap. For the correlation, the mean of the measure over the family's arms with
+    the same seed is subtracted first. With two arms, the correlation shows only the sign of the
+    effect, and whether it is the same for all seeds.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     of = frame[SOLVER].map(lambda arm: ASKED[arm][0])

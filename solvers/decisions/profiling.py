@@ -5,8 +5,8 @@ So a profile is a sequence of separately timed runs with doubling limits.
 
 The primal gap of a value v against the best known one b is 0 if both are 0, 1 if their signs
 differ, and ``|v - b| / max(|v|, |b|)`` otherwise; it is 1 while there is no value (Berthold 2013,
-Measuring the impact of primal heuristics). The primal integral is its integral over time up to the
-end of the longest run, as a share of that time: 0 is perfect, 1 is nothing found.
+Measuring the impact of primal heuristics). The primal integral is the integral of the gap over
+time up to the end of the longest run, as a share of that time: 0 is perfect, 1 is nothing found.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ class ShortOrders(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Count orders cancelled, delivered in part, or stuck at the end, and units not delivered."""
+        """Count orders cancelled, partial or stuck at the end, and units not delivered."""
         orders = run.tables["orders"]
         cancelled, done = orders["cancelled_s"].notna(), orders["completed_s"].notna()
         cut = orders["units_cut"]

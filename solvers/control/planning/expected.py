@@ -68,7 +68,7 @@ class ExpectedOrders:
         self._come += 1
 
     def draw(self, horizon_s: float, scenarios: int) -> list[list[ExpectedOrder]]:
-        """Return the future orders of each scenario; none until an order has arrived.
+        """Return the future orders of each scenario; there are none before the first arrival.
 
         Orders with a line that no single pod can serve are left out.
 

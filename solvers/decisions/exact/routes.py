@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 def routes(
     data: TaskSequence,
 ) -> tuple[LinearProgram, Names, Callable[[NDArray[np.float64]], Plain]]:
-    """Formulate the program.
+    """Return the program, the names of its columns, and the conversion to an answer.
 
     Parameters
     ----------
