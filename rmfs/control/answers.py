@@ -1,4 +1,4 @@
-"""Possible answers to a question as a table: one row per answer, one column per attribute."""
+"""A table of the possible answers to a question: one row per answer, one column per attribute."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 
 class Candidates:
-    """C possible answers as a table: one row per answer, one column per attribute.
+    """The C possible answers to a question: one row per answer, one column per attribute.
 
     `candidates[row]` is the answer itself, to be passed to `Decision.answer`.
 
     Attributes
     ----------
     columns
-        Arrays of shape (C,) by name; see `MEANINGS`.
+        Arrays of shape (C,) by name; `MEANINGS` gives their units and meanings.
     """
 
     def __init__(self, columns: Columns, answer: Callable[[int], Any]) -> None:
@@ -48,7 +48,7 @@ class Candidates:
 
 
 class Meaning(NamedTuple):
-    """Unit and meaning of a column."""
+    """Unit and meaning of a column of `Candidates`."""
 
     unit: str
     text: str
@@ -60,29 +60,35 @@ MEANINGS = {
     "station": Meaning("", "number of a station, pick stations first"),
     "robot": Meaning("", "number of a robot"),
     "pod": Meaning("", "number of a pod"),
-    "place": Meaning("", "waypoint of a storage place"),
+    "place": Meaning("", "waypoint of a storage location"),
     "lines": Meaning("lines", "lines of the order"),
-    "units": Meaning("units", "units still open, or how many of them the pod can serve"),
+    "units": Meaning(
+        "units",
+        "units that the order or station needs, or that the pod can serve; at replenishment "
+        "stations, pods with waiting bundles",
+    ),
     "inbound_units": Meaning(
-        "units", "of these, units that are spare on pods at the station or on their way there"
+        "units", "units of the order that are spare on pods at the station or on their way there"
     ),
     "in_stock": Meaning("", "1 if stock can serve the whole order, 0 if not"),
     "age_s": Meaning("s", "time since arrival"),
     "due_in_s": Meaning("s", "time until the due time, negative if late"),
     "free_slots": Meaning("orders", "free slots of the station"),
     "orders": Meaning("orders", "orders that the pod completes"),
-    "bundles": Meaning("bundles", "bundles for the pod, or the station"),
+    "bundles": Meaning("bundles", "bundles that wait for the pod, or that the station has"),
     "space": Meaning("space units", "space the bundle takes"),
     "free_space": Meaning("space units", "room left on the pod, or at the station"),
     "reach_s": Meaning("s", "estimated travel time from the robot to the pod"),
     "bring_s": Meaning("s", "unhindered travel time from the pod to the station"),
-    "away_s": Meaning("s", "unhindered travel time from the robot to the place or station"),
+    "away_s": Meaning(
+        "s", "unhindered time from the robot to the place or station; in turns of TA, an estimate"
+    ),
     "back_s": Meaning("s", "unhindered time from the place to the nearest active pick station"),
-    "distance_m": Meaning("m", "straight distance"),
+    "distance_m": Meaning("m", "straight distance from the pod to the place"),
     "robots": Meaning("robots", "robots working for the station or on their way there"),
     "level_share": Meaning("share", "charge of the robot's battery, as a share of its capacity"),
     "active": Meaning("", "1 if the station takes new work, 0 if not"),
     "pick": Meaning("", "1 if the station is a pick station, 0 if not"),
     "kind": Meaning("", "0 work for a station, 1 store the pod, 2 move a pod, 3 rest"),
 }
-"""Units and meanings of the columns of candidates."""
+"""Units and meanings of the columns of `Candidates`, by name."""

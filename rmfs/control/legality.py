@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 KINDS: dict[Problem, tuple[type, ...]] = {
     problem: tuple(getattr(say, name) for name in problem.decisions) for problem in Problem
 }
-"""The classes of decision allowed in a turn of each problem."""
+"""For each problem, the classes of the decisions that may be made in one of its turns."""
 
 
 def why_not(given: Any, question: Question, view: View) -> str:
@@ -42,7 +42,8 @@ def why_not(given: Any, question: Question, view: View) -> str:
 def reason(decision: Any, view: View) -> str:
     """Return why a decision is impossible now, or an empty string if there is no objection.
 
-    `Prepare` and `Exchange` are not checked; nor is whether PPS or repositioning find a pod.
+    `Prepare` and `Exchange` are not checked. For `WorkFor` and `MovePod`, it is not checked whether
+    PPS or repositioning will find a pod.
     """
     check = _DECISIONS.get(type(decision))
     if check is None:
@@ -231,7 +232,7 @@ def _empty_place(place: Any, view: View) -> str:
         return f"{place!r} is not a waypoint"
     index = view.storage.place_index[place]
     if index < 0:
-        return f"waypoint {place} is not a storage place"
+        return f"waypoint {place} is not a storage location"
     return "" if view.storage.is_empty[index] else f"place {place} is not empty"
 
 
