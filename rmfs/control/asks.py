@@ -17,7 +17,10 @@ Q = TypeVar("Q")
 D = TypeVar("D")
 
 BOUND_TOLERANCE = 1e-6
-"""Largest excess of a bound over the objective z due to rounding, relative to ``max(1, |z|)``."""
+"""Largest accepted excess of a bound over the objective z, relative to ``max(1, |z|)``.
+
+Rounding can cause such an excess.
+"""
 
 Plain = NDArray[Any] | int | float | str | bool | Sequence["Plain"]
 """A value in a solution. Solutions are sent between processes, recorded and replayed."""
@@ -38,18 +41,19 @@ class Answer:
     backend
         Name of the back end.
     work
-        Effort of the solver in the unit of the back end, the same whenever the question is solved.
+        Effort of the solver, in a unit of the back end; always the same for the same question.
     wall_s, build_s
-        Total wall time, and the part spent building the solver's model.
+        Total wall time, and the part of it that was spent building the solver's model.
     built
-        Size of the solver's model (nonzeros). Pacing by work turns `work` and `built` into
-        simulated time.
+        Size of the solver's model (nonzeros). If the run is paced by work, `work` and `built`
+        determine the simulated time that the answer takes.
     scale
         Reference for the relative gap, in the unit of the objective, such as the cost of the pods
-        called. Default: the absolute objective, which is unsuitable if gains and costs cancel out.
+        called. Default: the absolute value of the objective, which is unsuitable if gains and costs
+        cancel out.
     found
-        All values that the optimiser found, for saving questions and answers; they are not
-        recorded. `solution` is the part that the controller needs.
+        All values that the optimiser found, for users who export questions and answers. The run
+        folder contains only `solution`, the part that the controller needs.
 
     Raises
     ------
@@ -109,7 +113,7 @@ def checked(answer: Any) -> Answer:
     Raises
     ------
     TypeError
-        If it is something else.
+        If the value is something else.
     """
     if not isinstance(answer, Answer):
         raise TypeError(f"an optimiser must return an Answer; it returned {type(answer).__name__}")
@@ -155,7 +159,7 @@ class Outcome(StrEnum):
 
 
 class Asker(Protocol):
-    """The part of a controller (`rmfs.control.base.Controller`) that concerns its questions."""
+    """The members of `rmfs.control.base.Controller` that its questions to optimisers need."""
 
     in_flight: int
 
@@ -182,12 +186,12 @@ class Call:
     failure
         Reason for a failure, in one line.
     applied, stale
-        Number of the solution's decisions that were applied, and number that had become invalid.
+        Numbers of the solution's decisions that were applied, and that had become invalid.
     fallback
         Number of decisions made by the controller's own rule because the call failed or found
         nothing.
     done
-        Number of parts of the answer already handled, by name of the group of parts (`left`).
+        Number of parts of the answer that have been handled, by name of their group (see `left`).
     """
 
     number: int
@@ -212,7 +216,7 @@ class Call:
 
     @property
     def paced_s(self) -> float:
-        """Simulated time from the question to its effect; nan while waiting."""
+        """Simulated time in s from the question to the effect of its answer; nan while waiting."""
         if self.completed_us < 0:
             return float("nan")
         return (self.completed_us - self.requested_us) / 1e6
@@ -220,9 +224,10 @@ class Call:
     def left(self, name: str, parts: Sequence[D]) -> Iterator[D]:
         """Yield the parts of an answer that have not been handled yet.
 
-        A TA rule that iterates over its answer this way can be resumed in the middle. When PPS, PSA
-        or repositioning are decided outside, `answered` stops at the first question to them and is
-        called again once that question is answered (`Controller.goes_on`).
+        A TA rule that iterates over its answer in this way can be resumed in the middle. This is
+        needed if a program outside the simulation decides PPS, PSA or repositioning: `answered` is
+        interrupted by the first question to the program, and called again when the program has
+        answered it (`Controller.goes_on`).
 
         Parameters
         ----------
@@ -236,7 +241,7 @@ class Call:
             yield parts[number]
 
     def count(self) -> None:
-        """Count a decision of this call: as `applied`, or as `fallback` without a solution."""
+        """Count a decision of this call: as `applied`, or as `fallback` if there is no solution."""
         if self.solution is None:
             self.fallback += 1
         else:
@@ -250,10 +255,11 @@ class Call:
 
 
 class By(NamedTuple, Generic[D]):
-    """A decision and the call whose solution it is based on; None if the own rule decided.
+    """A decision, with the call whose solution it is based on.
 
-    A decision without `By` is attributed to the controller's own rule if it comes from `decide`,
-    and to the answer if it comes from `answered`.
+    The call is None if the controller's own rule made the decision. A decision without `By` is
+    attributed to the controller's own rule if it comes from `decide`, and to the answer if it comes
+    from `answered`.
     """
 
     decision: D
@@ -261,20 +267,20 @@ class By(NamedTuple, Generic[D]):
 
 
 def told_by(decision: Any, otherwise: Call | None) -> tuple[Any, Call | None]:
-    """Return a decision without `By`, and the call on which it is based.
+    """Return a decision without its wrapper `By`, and the call on which it is based.
 
     Parameters
     ----------
     decision
-        A decision, with or without `By`.
+        A decision, which may be wrapped in `By`.
     otherwise
-        The call of a decision without `By`.
+        The call on which the decision is based if it is not wrapped.
     """
     return decision if type(decision) is By else (decision, otherwise)
 
 
 def own(decisions: Iterable[D]) -> Iterator[D | By[D]]:
-    """Yield decisions attributed to the controller's own rule, even from within `answered`.
+    """Yield the decisions, attributed to the controller's own rule even within `answered`.
 
     Questions (`Ask`) are passed on unchanged.
     """

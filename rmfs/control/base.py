@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
 
 class Parameters(Model):
-    """Base class of controller parameters; the docstring below a field explains it to users."""
+    """Base class of controller parameters; the string below a field is its documentation."""
 
     model_config = pydantic.ConfigDict(use_attribute_docstrings=True)
 
 
 class RuleTables(Parameters):
-    """Rules for some problems; each is a table as in a controllers file."""
+    """Rules for some of the decision problems, each given as a table of a controllers file."""
 
     poa: Table | None = None
     """The rule for pick order assignment."""
@@ -65,36 +65,37 @@ class Controller(Generic[P]):
 
     A controller is asked for decisions when one of its triggers occurs, or at a time of its own
     choice. It reads the view and changes nothing itself; its decisions are applied by the
-    simulation. A controller that is installed during a run is asked at once.
+    simulation. A controller that is installed during a run is asked for decisions immediately.
 
     Attributes
     ----------
     problem
         The decision problem that it solves.
     parameters_model
-        Model of its parameters, which defines file format, `--set` and documentation.
+        Model of its parameters; their file format, `--set` and documentation are derived from it.
     triggers
-        Events after which controllers of the problem are asked (paper, table 1), unless a rule
-        overrides them.
+        Events after which controllers of the problem are asked for decisions (Merschformann, Xie
+        and Li 2018, table 1), unless a rule overrides them.
     subscriptions
-        Further events after which this controller is asked.
+        Further events after which this controller is asked for decisions.
     hears
         Events that are passed to `hear` immediately, even if no decision is due.
     waits_for
         Problems whose decisions it waits for; two rules that wait for each other are refused.
     decides
-        Further problems that it decides; the rule of each must be a dummy.
+        Further problems that it decides; for each of them, a dummy must be selected.
     is_dummy
         Whether it decides nothing and leaves the problem to another controller.
     optimisers
         Modules with the functions that answer its questions (`rmfs.control.asks`); required of
         controllers that ask optimisers.
     goes_on
-        Whether `answered` may be called again with the same call after it was interrupted by a
-        question to be decided outside; it then continues where it stopped (`Call.left`). Set by TA
-        rules that ask optimisers; otherwise PPS, PSA and repositioning cannot be decided outside.
+        Whether `answered` continues where it stopped (`Call.left`) if it is called again with the
+        same call, after a question to a program outside the simulation interrupted it. With a TA
+        rule that asks optimisers, PPS, PSA and repositioning can be decided outside the simulation
+        only if this is true.
     looks_ahead
-        Whether it needs `lookahead`, with which it can try out decisions.
+        Whether it needs the attribute `lookahead`, with which it can try out decisions.
     in_flight
         Number of its questions that are waiting for an answer.
     """
@@ -119,9 +120,9 @@ class Controller(Generic[P]):
         self.rng = rng
 
     def next_event_s(self) -> float:
-        """Simulated time in s by which it must be asked again; inf: only after events.
+        """Return the latest simulated time, in s, at which to ask it for decisions again.
 
-        It is read after each call.
+        If it is inf, the controller is asked only after events. The time is read after each call.
         """
         return inf
 
@@ -129,19 +130,19 @@ class Controller(Generic[P]):
         """Process an event listed in `hears`; `Trigger` describes the subject of each event."""
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the decisions of a solution that are still valid, in the same way as `decide`.
+        """Yield, as `decide` does, those decisions of a solution that are still valid.
 
-        Called once for each question, even if there is no solution. Count decisions that are no
-        longer valid in `call.stale`, and mark decisions that do not come from this answer with
-        `rmfs.control.asks.By`. By default there are no decisions.
+        This method is called once for each question, even if there is no solution. It counts
+        decisions that are no longer valid in `call.stale`, and marks decisions that do not come
+        from this answer with `rmfs.control.asks.By`. The base class yields no decisions.
         """
         return iter(())
 
     def is_modelled(self, decision: Any) -> bool:
-        """Return whether a decision is of a kind that its optimisers make.
+        """Return whether a decision is of a kind that the controller's optimisers make.
 
-        Only these are counted as decisions by a solution or by the own rule. A prepared task counts
-        when it is carried out.
+        Only such decisions are counted, either as based on a solution or as made by the
+        controller's own rule. A prepared task is counted when it is carried out.
         """
         return not getattr(decision, "is_ahead", False)
 

@@ -1,4 +1,4 @@
-"""The options of a decision, with the attributes that rules compare."""
+"""The possible answers to each kind of question, with the attributes that rules compare."""
 
 from __future__ import annotations
 
@@ -38,12 +38,13 @@ if TYPE_CHECKING:
 
 
 def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) -> Candidates:
-    """List the possible answers to a question; none in a turn of MM.
+    """List the possible answers to a question; the list is empty in a turn of MM.
 
     Parameters
     ----------
     refused
-        Answers of the same turn that could not be carried out; they are left out in a turn of TA.
+        Answers of the same turn that could not be carried out. They are left out in a turn of TA,
+        and have no effect otherwise.
     """
     if question.kind != "turn":
         return _OF_KIND[question.kind](view, view.robots[question.robot], question.stations)
@@ -231,7 +232,7 @@ def _next_stations(view: View, robot: Robot, stations: tuple[int, ...]) -> Candi
 
 
 def _places(view: View, robot: Robot, stations: tuple[int, ...]) -> Candidates:
-    """Empty storage places."""
+    """Empty storage locations."""
     places = view.storage.places[view.storage.is_empty]
     active = [station for station in view.pick_stations if station.active] or view.pick_stations
     back = np.min(

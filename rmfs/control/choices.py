@@ -25,17 +25,17 @@ DEFAULTS = {problem: problem.default for problem in Problem}
 """The rule of a problem that a controllers file does not mention."""
 
 _SHARED: dict[type[Parameters], str] = {TurnoverParameters: "classes", ZoneParameters: "zones"}
-"""Parameters that must agree in all rules that have them, and what they describe."""
+"""Models whose parameters must be equal in all rules that have them, and what they describe."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A rule and its validated parameters.
+    """The rule chosen for a problem, and its validated parameters.
 
     Attributes
     ----------
     name
-        Name as in the file: a registered name, `module:Class` or `path/to/file.py:Class`.
+        Name as in a controllers file: a registered name, `module:Class` or `path/to/file.py:Class`.
     """
 
     problem: Problem
@@ -48,7 +48,7 @@ class Choice:
         return registry.find(self.problem, self.name)
 
     def to_table(self) -> Table:
-        """Return name and parameters as a table of a controllers file."""
+        """Return the rule's name and parameters as a table of a controllers file."""
         return {"name": self.name, **self.parameters.model_dump(mode="json", exclude_none=True)}
 
 
@@ -58,7 +58,7 @@ def choose(problem: Problem, table: Table, source: str) -> Choice:
     Raises
     ------
     InputError
-        If the rule, a key or a value is invalid; names the key and what would be valid.
+        If the rule, a key or a value is invalid; the message names the key and what would be valid.
     """
     parameters = dict(table)
     name = parameters.pop("name", DEFAULTS[problem])
@@ -85,9 +85,9 @@ def check_together(choices: Mapping[Problem, Choice], source: str) -> None:
     Raises
     ------
     InputError
-        If a joint controller is combined with a partner that is not a dummy; if no controller makes
-        the decisions of a dummy; if two rules wait for each other; or if two rules use different
-        turnover classes or zones.
+        If a controller decides a further problem for which no dummy is selected; if a dummy is
+        selected for a problem that no other controller decides; if two rules wait for each other;
+        or if two rules use different turnover classes or zones.
     """
     _refuse_mutual_waiting(choices, source)
     _refuse_different_views(choices, source)

@@ -24,8 +24,8 @@ class AssignOrder(NamedTuple):
 class AssignLines(NamedTuple):
     """POA: assign the lines of an order with these SKUs to a pick station.
 
-    The order is split: its other lines stay in the backlog. Lines of an order that already has a
-    part at the station join that part and share its slot.
+    The order is split: its other lines stay in the backlog. If a part of the order is already at
+    the station, the lines join that part and share its slot.
     """
 
     order: Order
@@ -36,8 +36,9 @@ class AssignLines(NamedTuple):
 class QueueOrder(NamedTuple):
     """POA: move an order of the backlog into the pool of a pick station.
 
-    The order remains in the backlog and can only be assigned to this station, but its requests can
-    be bound to pods. Station -1 removes it from its pool and makes these requests open again.
+    The order remains in the backlog and can only be assigned to this station, but the units that it
+    needs can already be bound to pods. Station -1 removes the order from its pool and releases
+    these units.
     """
 
     order: Order
@@ -45,51 +46,51 @@ class QueueOrder(NamedTuple):
 
 
 class SendBundle(NamedTuple):
-    """ROA: choose the replenishment station of a bundle, and reserve space there."""
+    """ROA: choose the replenishment station of a bundle, and reserve space at the station."""
 
     bundle: Bundle
     station: int
 
 
 class PromiseBundle(NamedTuple):
-    """RPS: choose the pod of a bundle, which reserves room; not released until `ReleasePod`."""
+    """RPS: choose the pod of a bundle, and reserve room in it; `ReleasePod` releases the choice."""
 
     bundle: Bundle
     pod: int
 
 
 class ReleasePod(NamedTuple):
-    """RPS: release the bundles promised to a pod, after which ROA and TA may act on the choice."""
+    """RPS: release the bundles promised to a pod; ROA and TA may act on them from then on."""
 
     pod: int
 
 
 class BringForPicks(NamedTuple):
-    """TA: bring an available pod, or the one already carried, to a pick station."""
+    """TA: let a robot bring an available pod, or the pod it carries, to a pick station."""
 
     robot: Robot
     pod: int
     station: int
 
     def task(self) -> Task:
-        """Return the corresponding task, not yet begun."""
+        """Return the task for this decision, not yet begun."""
         return PickTask(self.robot.index, self.pod, self.station)
 
 
 class BringForBundles(NamedTuple):
-    """TA: bring an available pod, or the one already carried, to a replenishment station."""
+    """TA: let a robot bring an available pod, or the pod it carries, to a replenishment station."""
 
     robot: Robot
     pod: int
     station: int
 
     def task(self) -> Task:
-        """Return the corresponding task, not yet begun."""
+        """Return the task for this decision, not yet begun."""
         return ReplenishTask(self.robot.index, self.pod, self.station)
 
 
 class Visit(NamedTuple):
-    """TA: bring an available pod, or the one already carried, to a station of another kind.
+    """TA: let a robot bring an available pod, or the pod it carries, to a station of another kind.
 
     `what` is the kind of task, as defined by the kind of station.
     """
@@ -100,44 +101,44 @@ class Visit(NamedTuple):
     what: type[VisitTask]
 
     def task(self) -> Task:
-        """Return the corresponding task, not yet begun."""
+        """Return the task for this decision, not yet begun."""
         return self.what(self.robot.index, self.pod, self.station)
 
 
 class Park(NamedTuple):
-    """TA: store the carried pod at a place.
+    """TA: let a robot store the pod it carries at a storage location (`place`, a waypoint).
 
-    In a prepared task the place may be -1: PSA then chooses the place when the task begins.
+    In a prepared task, `place` may be -1: PSA then chooses the location when the task begins.
     """
 
     robot: Robot
     place: int
 
     def task(self) -> Task:
-        """Return the corresponding task, not yet begun."""
+        """Return the task for this decision, not yet begun."""
         return ParkTask(self.robot.index, place=self.place)
 
 
 class Reposition(NamedTuple):
-    """TA: fetch an available pod and store it at another, empty place."""
+    """TA: let a robot fetch an available pod and store it at another, empty storage location."""
 
     robot: Robot
     pod: int
     place: int
 
     def task(self) -> Task:
-        """Return the corresponding task, not yet begun."""
+        """Return the task for this decision, not yet begun."""
         return RepositionTask(self.robot.index, self.pod, place=self.place)
 
 
 class Rest(NamedTuple):
-    """TA: wait at a waypoint without a pod; TA may give the robot another task at any time."""
+    """TA: let a robot without a pod wait at a waypoint until TA gives it another task."""
 
     robot: Robot
     place: int
 
     def task(self) -> Task:
-        """Return the corresponding task, not yet begun."""
+        """Return the task for this decision, not yet begun."""
         return RestTask(self.robot.index, place=self.place)
 
 
@@ -146,7 +147,7 @@ TaskDecision = BringForPicks | BringForBundles | Visit | Park | Reposition | Res
 
 
 class WorkFor(NamedTuple):
-    """TA, from outside: let a robot work for a station.
+    """TA, only from a program outside the simulation: let a robot work for a station.
 
     PPS chooses the pod, unless the robot carries one.
     """
@@ -156,15 +157,18 @@ class WorkFor(NamedTuple):
 
 
 class Store(NamedTuple):
-    """TA, from outside: let a robot store the pod it carries; PSA chooses the place."""
+    """TA, only from a program outside the simulation: let a robot store the pod it carries.
+
+    PSA chooses the storage location.
+    """
 
     robot: Robot
 
 
 class MovePod(NamedTuple):
-    """TA, from outside: let a robot without a pod move an idle one.
+    """TA, only from a program outside the simulation: let a robot without a pod move an idle pod.
 
-    Repositioning chooses pod and place.
+    Repositioning chooses the pod and its new storage location.
     """
 
     robot: Robot
@@ -178,9 +182,9 @@ class _Ahead(NamedTuple):
 class Prepare(_Ahead):
     """TA: the next tasks of a robot, in order; they replace earlier prepared tasks.
 
-    Prepared tasks reserve nothing. A task that is impossible when its turn comes (the pod is
-    claimed, the place occupied, the work done by others) is skipped; after the last one, TA is
-    asked as usual.
+    Prepared tasks reserve nothing. A task is skipped if it is impossible when its turn comes, for
+    example because the pod is claimed, the storage location occupied, or the work done by others.
+    After the last prepared task, TA decides about the robot as usual.
     """
 
     __slots__ = ()
@@ -188,27 +192,27 @@ class Prepare(_Ahead):
 
 
 class Charge(NamedTuple):
-    """CA: send a robot without a pod to an energy station, until its battery reaches a level."""
+    """CA: let a robot without a pod get energy at a station until its battery reaches a level."""
 
     robot: Robot
     station: int
     until_share: float
 
     def task(self) -> Task:
-        """Return the corresponding task, not yet begun."""
+        """Return the task for this decision, not yet begun."""
         return ChargeTask(
             self.robot.index, station=self.station, until_share=float(self.until_share)
         )
 
 
 class Unplug(NamedTuple):
-    """CA: make a robot leave its plug-in place; it then needs a task."""
+    """CA: make a robot leave its plug-in place, after which the robot needs a task."""
 
     robot: Robot
 
 
 class SwitchStation(NamedTuple):
-    """SA: switch a station on (it may get new work) or off."""
+    """SA: switch a station on, so that it may get new work, or off."""
 
     station: int
     active: bool

@@ -1,7 +1,8 @@
 """Dummies: placeholders for problems that a joint controller of another problem decides.
 
 A dummy makes no decision: it is not asked, or its answer is that there is nothing to do. A
-controllers file with a dummy needs a controller that lists the problem in `decides`.
+controllers file may select a dummy for a problem only if the controller of another problem lists
+this problem in `decides`.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ NEVER: frozenset[Trigger] = frozenset()
 
 
 class DummyPOA(PickOrderAssignment[NoParameters]):
-    """Leaves orders to another controller."""
+    """Leaves the assignment of orders to another controller."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER
@@ -50,7 +51,7 @@ class DummyPOA(PickOrderAssignment[NoParameters]):
 
 
 class DummyROA(ReplenishmentOrderAssignment[NoParameters]):
-    """Leaves the stations of bundles to another controller."""
+    """Leaves the choice of a station for each bundle to another controller."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER
@@ -61,7 +62,7 @@ class DummyROA(ReplenishmentOrderAssignment[NoParameters]):
 
 
 class DummyRPS(ReplenishmentPodSelection[NoParameters]):
-    """Leaves the pods of bundles to another controller."""
+    """Leaves the choice of a pod for each bundle to another controller."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER
@@ -72,7 +73,10 @@ class DummyRPS(ReplenishmentPodSelection[NoParameters]):
 
 
 class DummyPPS(PodSelection[LateBinding]):
-    """Leaves the choice of pods to another controller; its parameters control late binding."""
+    """Leaves the choice of pods to another controller.
+
+    The parameters determine which units are bound to pods that have been chosen (late binding).
+    """
 
     is_dummy: ClassVar[bool] = True
     parameters_model = LateBinding
@@ -96,12 +100,12 @@ class DummyPSA(PodStorageAssignment[NoParameters]):
     is_dummy: ClassVar[bool] = True
 
     def place(self, robot: Robot) -> int:
-        """Return -1: no place."""
+        """Return -1: no storage location."""
         return -1
 
 
 class DummyRepositioning(Repositioning[NoParameters]):
-    """Leaves moves of pods to another controller."""
+    """Leaves the moves of idle pods to another controller."""
 
     is_dummy: ClassVar[bool] = True
 
@@ -111,7 +115,7 @@ class DummyRepositioning(Repositioning[NoParameters]):
 
 
 class DummyTA(TaskAllocation[NoParameters]):
-    """Leaves the robots to another controller."""
+    """Leaves the tasks of robots to another controller."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER
@@ -127,7 +131,7 @@ class DummyTA(TaskAllocation[NoParameters]):
 
 
 class DummySA(StationActivation[NoParameters]):
-    """Leaves the stations to another controller; all are off until it switches them on."""
+    """Leaves the switching of stations, all off at the start, to another controller."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER
@@ -138,7 +142,7 @@ class DummySA(StationActivation[NoParameters]):
 
 
 class DummyCA(ChargeAssignment[NoParameters]):
-    """Leaves charging to another controller; robots that run low are sent to charge in any case."""
+    """Leaves charging to another controller; the simulation still sends robots that run low."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER

@@ -1,8 +1,8 @@
-"""Candidates as features for policies: one row per answer, scaled, and the best ones first.
+"""Features of candidates, as input of policies: scaled columns, and a ranking of the candidates.
 
-`rmfs.control.candidates` lists the possible answers in seconds, units and metres. Here the columns
-that rate an answer (not the numbers of robots, pods or places) are divided by a scale, so that 1 is
-a typical value, and clipped at `LIMIT`.
+`rmfs.control.candidates` lists the possible answers with attributes in seconds, units and metres.
+Here, the columns that rate an answer (not those that contain the number of a robot, pod or station)
+are divided by a scale, so that 1 is a typical value, and clipped at `LIMIT`.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 LIMIT = 10.0
-"""Maximum absolute value of a feature; larger ones are clipped."""
+"""Maximum absolute value of a feature; larger values are clipped."""
 
 FAR = 1e9
-"""Maximum value in rankings; larger ones are clipped."""
+"""Maximum value of a column when candidates are ranked; larger values are clipped."""
 
 KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.POA: ("poa",),
@@ -40,7 +40,7 @@ KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.REPOSITIONING: ("move",),
     Problem.CA: ("ca",),
 }
-"""The kinds of question of each problem; for a problem decided in turns, only its own name."""
+"""The kinds of question of each problem; a problem decided in turns has one, named after it."""
 
 COLUMNS: dict[str, tuple[str, ...]] = {
     "poa": (
@@ -90,7 +90,7 @@ SCALES: dict[str, float] = {
     "distance_m": 30.0,
     "level_share": 1.0,
 }
-"""The divisor of each feature, in the unit of its column."""
+"""The scale by which each column is divided, in the unit of the column."""
 
 OWN_MEANINGS: dict[str, tuple[str, str]] = {
     "orders_at_station": ("orders", "open orders at the station"),
@@ -115,7 +115,10 @@ RANKINGS: dict[str, dict[str, float]] = {
     "place": {"away_s": -1.0, "back_s": -1.0},
     "move": {"distance_m": -1.0, "reach_s": -1.0},
 }
-"""Weights of unscaled features; the k candidates with the greatest weighted sums are the best."""
+"""Weights by which candidates are ranked, for each kind of question: factors of unscaled features.
+
+The best candidates are those with the greatest weighted sums.
+"""
 
 
 class Feature(NamedTuple):
@@ -128,14 +131,14 @@ class Feature(NamedTuple):
 
 
 def features_of(kinds: Iterable[str]) -> tuple[Feature, ...]:
-    """Return the features of some kinds of question, in order of appearance, each once."""
+    """Return the features of some kinds of question, each once, in order of first appearance."""
     names = dict.fromkeys(name for kind in kinds for name in COLUMNS[kind])
     told = {**{name: tuple(one) for name, one in MEANINGS.items()}, **OWN_MEANINGS}
     return tuple(Feature(name, told[name][0], SCALES[name], told[name][1]) for name in names)
 
 
 def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[np.float64]]:
-    """Return the unscaled features of C candidates by name, each of shape (C,)."""
+    """Return the unscaled features of the C candidates, by name, each of shape (C,)."""
     columns = candidates.columns
     if kind == "ta":
         task = columns["kind"]
@@ -147,9 +150,9 @@ def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[
 
 
 def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> NDArray[np.float64]:
-    """Return the F features named, scaled and clipped, of C candidates, shape (C, F).
+    """Return the F named features of C candidates, scaled and clipped, as an array (C, F).
 
-    A feature missing in `columns` is 0.
+    A feature that is missing in `columns` is 0.
     """
     count = len(next(iter(columns.values()))) if columns else 0
     found = np.zeros((count, len(names)))

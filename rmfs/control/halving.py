@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Decisions to compare by trials; the first is that of the base rule.
+    """Decisions to compare by trials; the first is the decision of the base rule.
 
     Attributes
     ----------
@@ -27,7 +27,8 @@ class Comparison:
     samples
         Maximum number of futures in which each decision is tried.
     instants
-        Budget: no further future is tried once this many instants have been simulated.
+        Budget of all trials: once this many instants have been simulated, no further future is
+        tried.
     certainty
         A decision replaces the first only if its mean advantage exceeds this many standard errors.
     state
@@ -42,24 +43,25 @@ class Comparison:
     state: tuple[float, ...] = field(default=())
 
     def digested(self) -> tuple[object, ...]:
-        """Return what determines the hash of the question."""
+        """Return the values from which the hash of the question is computed."""
         return self.count, self.samples, self.instants, self.certainty, self.state
 
 
 def solve(question: Comparison) -> Answer:
     """Find the decision with the greatest mean value, by sequential halving.
 
-    All decisions are tried in one future. Each further round doubles the number of futures, and
-    after each round the worse half of the other decisions is dropped. The base rule's decision
-    stays, so that the others are compared with it in the same futures; it is chosen if no other is
-    better by `certainty` standard errors. Source: Karnin, Koren and Somekh (2013), "Almost optimal
+    First, all decisions are tried in one future. Each further round doubles the number of futures
+    tried so far. After each round, the base rule's decision and the better half of the others are
+    kept; trials end early if none of these others has a positive mean advantage. The base rule's
+    decision is chosen unless another has a mean advantage of more than `certainty` standard errors
+    over it in the same futures. Source: Karnin, Koren and Somekh (2013), "Almost optimal
     exploration in multi-armed bandits".
 
     Returns
     -------
     Answer
-        `row` of the solution is the index of the decision, the objective its mean value, negated.
-        Work is counted in instants.
+        `row` of the solution is the index of the decision; the objective is minus its mean value.
+        Work is the number of simulated instants.
     """
     values: dict[int, list[float]] = {row: [] for row in range(question.count)}
     alive, tried, spent, round_end = list(values), 0, 0, 1

@@ -1,7 +1,7 @@
-"""Linear rules: weights of features, and the candidate with the greatest weighted sum.
+"""Linear rules, which choose the candidate with the greatest weighted sum of features.
 
-The features are those of `rmfs.control.features`, scaled; `rmfs learn` trains the weights. Sums are
-taken in a fixed order of features, so that runs are reproducible on every machine.
+The features are the scaled ones of `rmfs.control.features`; `rmfs learn` trains the weights. The
+terms of a sum are added in a fixed order, so that runs are reproducible on every machine.
 """
 
 from __future__ import annotations
@@ -31,13 +31,14 @@ STARTS: dict[str, Weights] = {
         **{"away_s": -1.0, "units": 1.0, "robots": -5.0},
     },
 }
-"""Initial weights of scaled features, for questions whose ranking weights do not make a rule."""
+"""Initial weights of scaled features, by kind of question, where `RANKINGS` would be a bad rule."""
 
 
 def default_weights(kind: str) -> Weights:
-    """Return initial weights of the scaled features of a kind of question.
+    """Return the initial weights of the scaled features of a kind of question.
 
-    They are those of `STARTS` or else of `RANKINGS`, converted to scaled features.
+    These are the weights in `STARTS` or, if there are none, those in
+    `rmfs.control.features.RANKINGS`, multiplied by the scales. Features without a weight get 0.
     """
     if kind in STARTS:
         return {name: STARTS[kind].get(name, 0.0) for name in COLUMNS[kind]}
@@ -66,9 +67,9 @@ def best_of(
     weights: Weights,
     among: NDArray[np.intp] | None = None,
 ) -> int:
-    """Return the row with the greatest weighted sum; -1 if there is no candidate.
+    """Return the row with the greatest weighted sum; -1 if there is no row to choose from.
 
-    Ties go to the first of the rows.
+    Ties go to the row that comes first in `among`.
 
     Parameters
     ----------

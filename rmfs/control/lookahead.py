@@ -1,10 +1,10 @@
 """Look-ahead: lets a controller try out decisions before it makes one.
 
-A controller that sets `looks_ahead` is given a `LookAhead`. It passes some decisions to it and gets
-trials: copies of the run, each with one of the decisions applied and a base rule that continues.
-The future of a copy is drawn anew, from separate streams that are the same for all compared
-decisions, so it reveals nothing about the real future. A controller never has access to the run
-itself.
+A controller that sets `looks_ahead` is given a `LookAhead`. The controller passes some decisions to
+it and gets trials: simulations of a copy of the run in which one of the decisions is applied and a
+base rule decides afterwards. The future of a copy is drawn anew, from separate random streams, so
+it reveals nothing about the real future. The streams are the same for all compared decisions. A
+controller never has access to the run itself.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ class Goal(Parameters):
     """The value of a trial: a weighted sum of amounts within its horizon."""
 
     units: float = 1.0
-    """Value of a unit picked at the start of the horizon; it falls linearly to 0 at its end."""
+    """Value of a unit picked at the start of the horizon; it falls linearly to 0 at the end."""
     orders: float = 0.0
-    """Value of an order completed, discounted in the same way."""
+    """Value of an order completed at the start of the horizon; falls linearly to 0 at the end."""
     units_stored: float = 0.0
-    """Value of a unit stored, discounted in the same way; units that are picked must be replaced at
-    some time."""
+    """Value of a unit stored at the start of the horizon; falls linearly to 0 at the end. With 0,
+    trials value no replenishment, although picked units must be replaced at some time."""
     overdue_s: float = pydantic.Field(default=0.0, ge=0)
     """Cost of each second by which an order is overdue within the horizon."""
     distance_m: float = pydantic.Field(default=0.0, ge=0)
@@ -70,7 +70,7 @@ class Trials(Protocol):
 
 
 class LookAhead(Protocol):
-    """The look-ahead given to controllers that ask for it."""
+    """The look-ahead, given to controllers that set `looks_ahead`."""
 
     def __call__(
         self,

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 class PathLengths:
     """Lengths of shortest paths in metres, for empty and for loaded robots.
 
-    A loaded robot does not pass through storage places, occupied or not. An elevator ride is as
-    long as the distance between its tiers.
+    A loaded robot does not pass through storage locations, occupied or not. The length of an
+    elevator ride is the difference in height between the two tiers.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class PathLengths:
     def away(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
         """Return path lengths from a waypoint to all others, shape (N,), in m; inf: no path.
 
-        The path of a loaded robot may start and end at a storage place.
+        The path of a loaded robot may start and end at a storage location.
         """
         return self._lengths(waypoint, loaded, backwards=False)
 
@@ -44,7 +44,7 @@ class PathLengths:
         graph = self._graph(loaded, backwards)
         if not (loaded and self._layout.is_storage[waypoint]):
             return self._dijkstra(graph, waypoint)
-        # no edge leaves a storage place in this graph, so the first step is taken separately
+        # no edge leaves a storage location in this graph, so the first step is taken separately
         tails, heads, metres = self._all_edges()
         if backwards:
             tails, heads = heads, tails
@@ -64,7 +64,7 @@ class PathLengths:
         return lengths
 
     def _graph(self, loaded: bool, backwards: bool) -> Any:
-        """Build the graph, without the edges that leave storage places if robots are loaded."""
+        """Build the graph, without the edges that leave storage locations if robots are loaded."""
         from scipy.sparse import csr_array
 
         key = (loaded, backwards)

@@ -7,7 +7,10 @@ from typing import NamedTuple
 
 
 class Problem(StrEnum):
-    """Decision problems (paper, section 2.1); the value is the key in a controllers file."""
+    """Decision problems, mostly of Merschformann, Xie and Li (2018, section 2.1).
+
+    The value of a problem is its key in a controllers file.
+    """
 
     POA = "poa"
     ROA = "roa"
@@ -23,14 +26,14 @@ class Problem(StrEnum):
 
     @property
     def meaning(self) -> str:
-        """What the abbreviation stands for, and what is decided."""
+        """What the abbreviation of the problem stands for, and what is decided."""
         return _DECLARED[self].meaning
 
     @property
     def protocol(self) -> str:
         """The base class of all controllers of the problem, as `module:Class`.
 
-        It defines the methods by which a controller is asked, and the triggers.
+        The class defines the triggers, and the methods that ask a controller for decisions.
         """
         return _DECLARED[self].protocol
 
@@ -43,7 +46,7 @@ class Problem(StrEnum):
     def decisions(self) -> tuple[str, ...]:
         """Names of the classes of its decisions in `rmfs.control.decisions`.
 
-        Empty for PPS, PSA and repositioning, which answer questions of TA, and for PP.
+        There are none for PPS, PSA and repositioning, which answer questions of TA, and for PP.
         """
         return _DECLARED[self].decisions
 
@@ -118,11 +121,11 @@ _DECLARED = {
         ("Charge", "Unplug"),
     ),
 }
-"""Declaration of every problem; everything else about a problem is in its package."""
+"""Declaration of every problem; all else about a problem is in its package of `rmfs.control`."""
 
 
 class Trigger(IntEnum):
-    """Events that may call for a decision; the subject of each is given in brackets."""
+    """Events that may call for a decision. The subject of each event is given in brackets."""
 
     START = 0
     """The run begins."""
@@ -131,9 +134,10 @@ class Trigger(IntEnum):
     ORDER_ASSIGNED = 2
     """An order was assigned to a pick station [Order]."""
     UNIT_PICKED = 3
-    """The pick of a unit starts: the unit left its pod [pod, SKU]."""
+    """The pick of a unit begins; the unit no longer counts as on its pod [pod, SKU]."""
     ORDER_COMPLETED = 4
-    """A pick station handed on an order, or its part of one, which freed the slot [Order]."""
+    """A pick station has passed on an order, or a part of a split order; its slot is free
+    [Order]."""
     NEW_BUNDLE = 5
     """A bundle joined the backlog [Bundle]."""
     BUNDLE_PROMISED = 6
@@ -143,9 +147,9 @@ class Trigger(IntEnum):
     BUNDLE_SENT = 8
     """ROA chose a station for a bundle [Bundle]."""
     BUNDLE_ASSIGNED = 9
-    """The pod and the station of a bundle are both decided [Bundle]."""
+    """Both the pod and the station of a bundle have been chosen [Bundle]."""
     BUNDLE_STORED = 10
-    """The transfer of a bundle starts: its units are in stock now [Bundle]."""
+    """The transfer of a bundle begins; from now on its units count as stock [Bundle]."""
     STATION_SWITCHED = 11
     """A station was switched on or off [station]."""
     ROBOT_FREE = 12
@@ -155,6 +159,6 @@ class Trigger(IntEnum):
     POD_LIFTED = 14
     """A robot starts to lift a pod [pod]."""
     POD_AT_STATION = 15
-    """A robot, with its pod if it carries one, reached the head of a queue [station]."""
+    """A robot, with or without a pod, reached the head of a station's queue [station]."""
     ORDER_QUEUED = 16
     """An order of the backlog joined the pool of a pick station [Order]."""

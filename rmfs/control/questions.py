@@ -1,4 +1,4 @@
-"""Questions that can be decided outside the simulation."""
+"""Questions that a program outside the simulation can answer in place of a controller."""
 
 from __future__ import annotations
 
@@ -11,17 +11,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """A question that is answered outside the simulation.
+    """A question to a program outside the simulation.
 
     Attributes
     ----------
     kind
-        `turn`: the next decision of a problem. Questions of TA: `pick pod`, `replenishment pod` and
-        `next station` (PPS), `place` (PSA), `move` (repositioning).
+        `turn` asks for the next decision of a problem. The other kinds are questions that TA asks:
+        `pick pod`, `replenishment pod` and `next station` (decided by PPS), `place` (by PSA) and
+        `move` (by repositioning).
     robot
-        The robot that a question of TA concerns; -1 for a turn.
+        The robot for which TA asks; -1 for a turn.
     stations
-        For `pick pod` and `replenishment pod`, the station; for `next station`, the options.
+        For `pick pod` and `replenishment pod`, the station; for `next station`, those to choose
+        from.
     """
 
     problem: Problem

@@ -1,8 +1,8 @@
 """Maps the name of a rule to its controller class.
 
-Rules come from three sources: the tables below (by reference only, so that nothing of `solvers` is
-imported here); entry points of other distributions in the group `rmfs.controllers`, named
-`PROBLEM.NAME`; and `module:Class` or `path/to/file.py:Class` in a controllers file.
+Rules come from three sources: the tables below, which contain only references, so that nothing of
+`solvers` is imported here; entry points named `PROBLEM.NAME` in the group `rmfs.controllers` of
+other installed packages; and `module:Class` or `path/to/file.py:Class` in a controllers file.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rmfs.errors import InputError
 from rmfs.references import is_reference, require_allowed, resolve
 
 GROUP = "rmfs.controllers"
-"""Entry-point group of third-party controllers."""
+"""Group of entry points by which other packages provide controllers."""
 
 _BUILT_IN: dict[Problem, dict[str, str]] = {
     Problem.POA: {
@@ -142,11 +142,11 @@ _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
     },
     Problem.CA: {"schedule": "rmfs.solvers.control.charging:ScheduleControl"},
 }
-"""Controllers of this distribution that ask optimisers."""
+"""References to the controllers in `rmfs.solvers`, which ask optimisers, by problem and name."""
 
 
 def names(problem: Problem) -> list[str]:
-    """Return the names of all rules: of `rmfs.control`, of `rmfs.solvers`, then installed ones."""
+    """Return the names of all rules for a problem, in `rmfs` and other installed packages."""
     return [*_BUILT_IN[problem], *solver_backed(problem), *sorted(_installed(problem))]
 
 
@@ -171,7 +171,7 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     Raises
     ------
     InputError
-        If there is no such rule, it cannot be imported, lacks a method, or does not solve this
+        If there is no such rule, or the rule cannot be imported, lacks a method or solves another
         problem.
     """
     shipped = _BUILT_IN[problem] | _SOLVER_BACKED.get(problem, {})

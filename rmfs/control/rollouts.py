@@ -32,30 +32,33 @@ class RolloutParameters(Parameters):
     """Parameters of rollout rules."""
 
     base: Table = pydantic.Field(default_factory=dict)
-    """The rule that continues after the tried decision, as in a controllers file; by default the
-    default rule of the problem."""
+    """The rule that makes the default decision and decides after a tried decision, as a table of a
+    controllers file. By default, it is the default rule of the problem."""
     candidates: AtLeastOne = 4
-    """Number of decisions compared, including that of the base rule."""
+    """Maximum number of decisions compared, including the decision of the base rule."""
     samples: AtLeastOne = 4
     """Maximum number of futures in which each decision is tried."""
     horizon_s: Positive = 180.0
-    """Simulated duration of a trial."""
+    """Simulated duration of a trial in seconds."""
     instants: AtLeastOne = 100_000
-    """Budget per decision: no further round of trials starts after this many simulated instants."""
+    """Budget of each comparison: once its trials have simulated this many instants in total, no
+    further future is tried."""
     certainty: Annotated[float, pydantic.Field(ge=0)] = 1.0
-    """A decision replaces that of the base rule only if its mean advantage exceeds this many
+    """Another decision replaces that of the base rule only if its mean advantage exceeds this many
     standard errors."""
     goal: Goal = Goal()
-    """Value of a trial."""
+    """Weights of the amounts that make up the value of a trial."""
 
 
 class TriesOut:
-    """Shared implementation of rollout rules; precedes the class of the problem in the bases.
+    """Shared implementation of rollout rules.
+
+    In the list of base classes of a rule, it precedes the class of the problem.
 
     Attributes
     ----------
     base
-        The rule that makes the default decision and continues in trials.
+        The rule that makes the default decision, and that decides in trials.
     """
 
     looks_ahead: ClassVar[bool] = True
@@ -65,11 +68,11 @@ class TriesOut:
     view: View
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Pass the event to the base rule."""
+        """Pass an event to the base rule."""
         self.base.hear(trigger, subject)
 
     def next_event_s(self) -> float:
-        """Simulated time in s by which the base rule must be asked again."""
+        """Return the latest simulated time, in s, at which to ask the base rule again."""
         return float(self.base.next_event_s())
 
     def best(self, call: Call) -> Iterator[Any]:
@@ -91,8 +94,8 @@ def base_rule(
     Raises
     ------
     InputError
-        If there is no such rule, its parameters are invalid, or it asks optimisers, is a dummy or
-        decides other problems as well.
+        If there is no such rule, its parameters are invalid, or the rule asks optimisers, is a
+        dummy or decides further problems.
     """
     choice = choose(problem, parameters.base, f"{problem}.base")
     rule = choice.controller
@@ -110,7 +113,10 @@ def question(
     decisions: Sequence[Any],
     parameters: RolloutParameters,
 ) -> Ask[Comparison]:
-    """Return the question which decision is best; the first must be that of the base rule."""
+    """Return a question that asks which of the decisions is best.
+
+    The first of `decisions` must be that of the base rule.
+    """
     view = controller.view
     trials = controller.lookahead(
         controller.problem, decisions, base, parameters.horizon_s, parameters.goal

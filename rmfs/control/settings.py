@@ -40,12 +40,12 @@ class ControllerSettings:
     choices: Mapping[Problem, Choice]
 
     def to_table(self) -> Table:
-        """Return the contents of a controllers file, with defaults written out."""
+        """Return the contents of a controllers file for this set, including all defaults."""
         head: Table = {"format": FORMAT, "name": self.name, "description": self.description}
         return head | {str(problem): choice.to_table() for problem, choice in self.choices.items()}
 
     def rules(self) -> list[type[Controller[Any]]]:
-        """Return the classes of all rules, including those that MM may install, each once."""
+        """Return the classes of all rules, each once, including those that MM may install."""
         named = dict.fromkeys(_rules_in(self.to_table()))
         return list(dict.fromkeys(registry.find(problem, name) for problem, name in named))
 
@@ -73,14 +73,14 @@ class _File(RuleTables):
 def load(
     name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
 ) -> ControllerSettings:
-    """Load a controllers file without the notes; see `load_with_notes`."""
+    """Load a controllers file; `load_with_notes` describes arguments and errors."""
     return load_with_notes(name_or_path, overrides)[0]
 
 
 def load_with_notes(
     name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
 ) -> tuple[ControllerSettings, list[str]]:
-    """Load a controllers file, with notes from its import.
+    """Load a controllers file; also return notes if it was imported from RAWSim-O.
 
     Parameters
     ----------
@@ -88,18 +88,18 @@ def load_with_notes(
         A TOML file, a file of RAWSim-O (.xconf), or the name of a shipped set.
     overrides
         Pairs of a key path and a value, for example `(["psa", "name"], "random")`. An override that
-        selects another rule drops the parameters of the previous one; setting a problem to a plain
-        name selects that rule with its defaults.
+        selects another rule drops the parameters of the previous rule. `(["psa"], "random")` has
+        the same effect as `(["psa", "name"], "random")`.
 
     Returns
     -------
-    The controllers, and notes on what an import left out or does differently.
+    The controllers, and notes on what an import has left out or converted with differences.
 
     Raises
     ------
     InputError
-        If there is no such file or set, or its contents are invalid; names the key and what would
-        be valid.
+        If there is no such file or set, or its contents are invalid; the message names the key and
+        what would be valid.
     """
     path = instances.locate("controllers", str(name_or_path))
     if path.suffix.lower() == ".xconf":
@@ -133,7 +133,7 @@ def settings(
     Raises
     ------
     InputError
-        If the contents are invalid; names the key and what would be valid.
+        If the contents are invalid; the message names the key and what would be valid.
     """
     file = config.validate(_File, _overridden(table, list(overrides)), source)
     choices = {

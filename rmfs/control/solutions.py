@@ -1,4 +1,4 @@
-"""Text format for recorded solutions, exact to the last bit."""
+"""The text format of recorded solutions, which preserves numbers to the last bit."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ def to_text(solution: Mapping[str, Plain]) -> str:
     Raises
     ------
     TypeError
-        If it contains something that is neither a value of JSON nor a NumPy array or scalar of
+        If the solution contains anything but values of JSON, and NumPy arrays and scalars of
         numbers, truth values or strings.
     """
     return json.dumps({str(name): value for name, value in solution.items()}, default=_plain)
 
 
 def from_text(text: str) -> dict[str, Any]:
-    """Read a solution written by `to_text`; sequences become lists."""
+    """Read a solution written by `to_text`; tuples and other sequences are returned as lists."""
     solution: dict[str, Any] = json.loads(text, object_hook=_array)
     return solution
 

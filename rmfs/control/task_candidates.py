@@ -1,4 +1,4 @@
-"""The tasks that robots could do: the candidates of a turn of TA."""
+"""The tasks that robots could do, as candidates of a turn of TA."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 WORK, STORE, MOVE, REST = range(4)
-"""Values of the column `kind`."""
+"""Values of the column `kind` of `tasks`: the kinds of task."""
 
 _KIND_OF: dict[type, int] = {WorkFor: WORK, Store: STORE, MovePod: MOVE, Rest: REST}
 
@@ -30,14 +30,15 @@ def tasks(
 ) -> Candidates:
     """List the possible tasks of each robot that needs a task or rests.
 
-    Decision objects are created only for rows that are accessed, since most rows are only compared.
+    The object of a decision is created only when its row is accessed, since most rows are only
+    compared.
 
     Parameters
     ----------
     refused
         Decisions of the same turn that could not be carried out; they are left out.
     robots
-        Robots to be listed. Default: all that need a task or rest.
+        The robots whose tasks are listed. Default: all that need a task or are at rest.
     """
     if robots is None:
         robots = [*view.asking.values(), *view.resting.values()]
@@ -72,7 +73,7 @@ def tasks(
 
 
 def has_tasks(view: View) -> bool:
-    """Whether a robot needs a task, or one at rest could do more than move an idle pod."""
+    """Return whether a robot needs a task, or one at rest could do more than move an idle pod."""
     if view.asking:
         return True
     busy = any(station.has_open_work for station in view.stations)
@@ -80,10 +81,10 @@ def has_tasks(view: View) -> bool:
 
 
 def open_work(view: View, station: int) -> int:
-    """Return the amount of a station's open work, which no pod is under way to do.
+    """Return the amount of a station's open work, for which no pod is under way.
 
-    For a pick station, it is the number of units that open orders still need; for a replenishment
-    station, the number of pods with waiting bundles.
+    For a pick station, it is the number of units that its orders need and that are not bound to a
+    pod; for a replenishment station, the number of pods for which bundles wait.
     """
     target = view.stations[station]
     return target.requests.units if isinstance(target, PickStation) else len(target.waiting)

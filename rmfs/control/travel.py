@@ -18,13 +18,14 @@ if TYPE_CHECKING:
 _Waypoints = NDArray[np.signedinteger[Any]]
 
 Metric = Literal["euclidean", "manhattan", "path", "time"]
-"""Euclidean distance, Manhattan distance, length of the shortest path, and travel time."""
+"""Measures of distance: Euclidean, Manhattan, length of the shortest path, and travel time."""
 
 
 class TravelTimes(Protocol):
-    """The part of the traffic model that knows travel times, which depend on the kind of robot.
+    """The part of the traffic model that knows travel times.
 
-    The optional `robot` is one of that kind; by default robot 0.
+    Travel times depend on the kind of robot, which is given by the number of a robot of that kind.
+    Default: robot 0.
     """
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = ...) -> NDArray[np.float64]:
@@ -50,11 +51,12 @@ class TravelTables:
     paths
         Lengths of shortest paths.
     distances
-        Distances to a waypoint, shape (N,), by waypoint, metric and whether the robot is loaded;
-        path lengths from a waypoint have the key `~waypoint`.
+        Distances from all waypoints to one, shape (N,). The key consists of this waypoint, the
+        metric, and whether the robot is loaded. Path lengths from waypoint w to all others have the
+        key ``~w`` instead of w.
     to, away
-        Travel times to a waypoint, and from it, shape (N,), by waypoint and whether the robot is
-        loaded.
+        Travel times to a waypoint, and from it, shape (N,). The key consists of the waypoint and
+        whether the robot is loaded.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -67,9 +69,9 @@ class TravelTables:
 class Travel:
     """Travel times and distances between waypoints.
 
-    Travel times come from traffic and are those of robot 0's kind, from rest to rest with the best
-    initial heading. They are cached per waypoint, and so are distances. Request them only for
-    stations, of which there are few, and use `estimate_s` for all other waypoints.
+    Travel times come from the traffic model. They are those of robot 0's kind, from standstill to
+    standstill with the best initial heading. Times and distances are cached per waypoint. Request
+    them only for stations, of which there are few, and use `estimate_s` for other waypoints.
 
     Parameters
     ----------
@@ -101,7 +103,7 @@ class Travel:
         self._other_tier_m = 1 + max(tier.length_m + tier.width_m for tier in layout.tiers)
 
     def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
-        """Return unhindered times from all waypoints to this one, in s, (N,); inf: no path."""
+        """Return unhindered times from all waypoints to this one, in s, (N,); inf if no path."""
         times = self.tables.to.get((waypoint, loaded))
         if times is None:
             times = self.tables.to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
@@ -110,7 +112,7 @@ class Travel:
     def away(self, waypoint: int, *, loaded: bool, keep: bool = True) -> NDArray[np.float64]:
         """Return unhindered times from this waypoint to all, shape (N,), in s; inf: no path.
 
-        With `keep=False` they are not cached, for callers that cache what they need.
+        With `keep=False`, the times are not cached, for callers that cache those they need.
         """
         times = self.tables.away.get((waypoint, loaded))
         if times is None:
@@ -137,7 +139,7 @@ class Travel:
     ) -> NDArray[np.float64]:
         """Return distances from this waypoint to all others, shape (N,), in m, or s for `time`.
 
-        With `keep=False` times are not cached. `loaded` matters for `path` and `time` only.
+        With `keep=False`, times are not cached. `loaded` matters for `path` and `time` only.
         """
         if metric == "time":
             return self.away(waypoint, loaded=loaded, keep=keep)
@@ -157,7 +159,7 @@ class Travel:
         """Return distances from a waypoint to others, shape (n,), in m, or s for `time`.
 
         Euclidean and Manhattan distances are recomputed at each call, which suits waypoints that
-        rarely repeat. `loaded` matters for `path` and `time` only.
+        are rarely requested again. `loaded` matters for `path` and `time` only.
         """
         if metric == "euclidean":
             return self.metres(waypoint, others)
@@ -190,9 +192,9 @@ class Travel:
     def manhattan_metres(
         self, waypoint: int | _Waypoints, others: _Waypoints
     ) -> NDArray[np.float64]:
-        """Return Manhattan distances to other waypoints, with a surcharge to other tiers, in m.
+        """Return Manhattan distances in m to other waypoints, plus a surcharge for other tiers.
 
-        Shape (n,), or (m, n) for waypoints of shape (m, 1).
+        The shape is (n,), or (m, n) if `waypoint` contains several waypoints, shape (m, 1).
         """
         distance: NDArray[np.float64] = np.abs(self._x[others] - self._x[waypoint])
         distance += np.abs(self._y[others] - self._y[waypoint])
@@ -201,9 +203,10 @@ class Travel:
         return distance
 
     def estimate_s(self, waypoint: int | _Waypoints, others: _Waypoints) -> NDArray[np.float64]:
-        """Estimate times to other waypoints: Manhattan distance at top speed plus a quarter turn.
+        """Estimate travel times to other waypoints, in s, from Manhattan distances.
 
-        Speed and turn are those of the slowest kind of robot; other tiers get a surcharge.
+        A time is that of the distance at top speed plus a quarter turn. Speed and turning time are
+        those of the slowest kinds of robot. Waypoints on other tiers get a surcharge.
 
         Parameters
         ----------
@@ -223,7 +226,7 @@ class Travel:
         return seconds
 
     def metres(self, waypoint: int, others: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
-        """Return Euclidean distances to waypoints in m, with a surcharge to other tiers, (n,)."""
+        """Return Euclidean distances in m to waypoints, plus a surcharge for other tiers, (n,)."""
         x, y = self._x[others] - self._x[waypoint], self._y[others] - self._y[waypoint]
         distance: NDArray[np.float64] = np.sqrt(
             x * x + y * y

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class View:
-    """The world as controllers see it: to be read, never to be changed.
+    """The state of the world as controllers see it, which they may read but not change.
 
     The arrays are read-only. Controllers may read the attributes of objects (orders, stations,
     robots), but must not call methods that change something.
@@ -36,30 +36,32 @@ class View:
     inventory
         Stock: contained, available and promised units (`rmfs.world.inventory`).
     storage
-        Places, pods and claims (`rmfs.world.storage`).
+        Storage locations, pods, and claims of robots on them (`rmfs.world.storage`).
     orders, bundles
-        The two backlogs (`rmfs.world.backlog`).
+        The backlogs of orders and of bundles (`rmfs.world.backlog`).
     pick_stations, replenishment_stations, stations
         Pick stations, replenishment stations, and both kinds, pick stations first
         (`rmfs.world.stations`).
     all_stations
         All stations, including those of other kinds, which come last.
     slot_news, work_news
-        Stations that may have newly gained a slot, robot or open work (`rmfs.world.news`).
+        Notifications of pick stations whose slots or robot may have changed, and of stations whose
+        open work may have changed (`rmfs.world.news`).
     need
-        Open units per pick station and SKU, shape (S, K).
+        Open units per pick station and SKU, shape (S, K): units that the station's orders need and
+        that are not bound to a pod.
     lines
-        Number of order lines of the open orders per pick station and SKU, picked or not, shape
+        Number of order lines of the open orders, picked or not, per pick station and SKU, shape
         (S, K).
     bundles_waiting
-        Number of assigned bundles not yet part of a task, per replenishment station and pod, shape
-        (S, P).
+        Number of assigned bundles that are not yet part of a task, per replenishment station and
+        pod, shape (S, P).
     recovery_stations
         Stations where robots get energy: plug-in places and battery swap stations.
     robots
-        All robots, by index.
+        All robots, in order of index.
     asking, resting
-        By index, the robots that need a task, and those at rest or on their way to rest.
+        Robots by index: those that need a task, and those at rest or on their way to rest.
     queued_need
         Open units of queued orders per pick station and SKU, shape (S, K).
     travel
@@ -69,7 +71,7 @@ class View:
     time_of_day_s
         Time of day at time zero, in s.
     trackers
-        Counters shared by controllers (`rmfs.control.trackers`).
+        Statistics shared by controllers (`rmfs.control.trackers`).
     """
 
     def __init__(
@@ -127,9 +129,10 @@ class View:
         return self._world.staff
 
     def unit_s(self, station: int) -> float:
-        """Return the mean time of a unit at a pick station, in s, given its picker's current state.
+        """Return the mean time of a unit at a pick station, in s, in its picker's present state.
 
-        Layers, faces and errors are left out. Without a picker it is the time of the layout.
+        The additional time for layers and faces of a pod and for picking errors is not included.
+        Without a picker, the time is that of the layout.
         """
         staff = self._world.staff
         if staff is None or staff.at_station[station] is None:
@@ -158,23 +161,24 @@ class View:
         return self._draw_past_orders()
 
     def pod_waypoint(self, pod: int) -> int:
-        """Return the waypoint of a pod: its place, or the next one at which its robot stops."""
+        """Return the waypoint of a stored pod, or where the robot that carries it stops next."""
         place = self.storage.place_of[pod]
         return place if place >= 0 else self.travel.robot_waypoint(self.storage.claimed_by[pod])
 
     def work_version(self, station: int) -> tuple[int, ...]:
-        """Version of a station's work, which changes when work is added or a pod becomes available.
+        """Return the version of a station's work.
 
-        If no pod was found for a station, none will be found until the version changes.
+        It changes when work is added or a pod becomes available: if no pod was found for a station,
+        none will be found until the version has changed.
         """
         return self.storage.version, *self.all_stations[station].work_version
 
     def has_open_work(self, station: int) -> bool:
-        """Whether a station has requests, or bundles, for which no pod is under way."""
+        """Return whether a station has orders or bundles that need a pod not yet under way."""
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:
-        """Return the waypoint of the pod that a robot is to fetch, or else `robot.waypoint`."""
+        """Return the waypoint of the pod that a robot is to fetch; otherwise `robot.waypoint`."""
         task = robot.task
         if task is None or task.pod < 0 or robot.pod >= 0:
             return robot.waypoint

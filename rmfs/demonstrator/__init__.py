@@ -1,1 +1,1 @@
-"""Physical or emulated robots in place of simulated ones (RAWSim-O paper, section 4)."""
+"""Physical or emulated robots in place of simulated ones (as in the RAWSim-O paper, section 4)."""

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 app = typer.Typer()
 
 EMULATED = "emulated"
-"""Value of the address option that starts an emulated room along with the server."""
+"""Value of the option `--robots` that starts an emulated room along with the server."""
 
 GIVEN_UP = 1
 TRUTH = "room.json"

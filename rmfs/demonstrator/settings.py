@@ -1,4 +1,4 @@
-"""Settings of a demonstration, with validation."""
+"""The settings of a demonstration, read from options and validated."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 TCP, ROOM = "tcp", "room"
-"""Address schemes for real time and for the time of an emulated room."""
+"""Address schemes: for real time, and for the time of an emulated room."""
 
 SECRET = "RMFS_SECRET"
 """Environment variable that contains the secret."""
@@ -22,7 +22,7 @@ SHORTEST_SECRET = 8
 
 
 def address(url: str, option: str) -> tuple[str, str, int]:
-    """Return scheme, host and port of an address.
+    """Return the scheme, host and port of an address.
 
     Raises
     ------
@@ -64,14 +64,14 @@ def secret(file: Path | None) -> bytes:
 
 
 def robots(layout: Layout, chosen: str | None, option: str = "--real") -> dict[str, int]:
-    """Return names and indices of the robots that are outside the simulation.
+    """Return the names of the robots outside the simulation, with their indices in the layout.
 
     Parameters
     ----------
     layout
-        The layout, whose robot 3 is called `robot-3`.
+        The warehouse. Its robot with index 3 is called `robot-3`.
     chosen
-        Indices of the robots, separated by commas; None for all.
+        Indices of the robots, separated by commas; None for all robots.
 
     Raises
     ------
@@ -97,7 +97,8 @@ def tags(layout: Layout, file: Path | None) -> list[str]:
     layout
         The warehouse.
     file
-        One line `waypoint;tag` per waypoint; None for the tags W0, W1, ... of an emulated floor.
+        File with one line `waypoint;tag` per waypoint; None for the tags W0, W1, ... of an
+        emulated floor.
 
     Raises
     ------

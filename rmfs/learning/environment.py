@@ -1,4 +1,4 @@
-"""`rmfs/Decision-v0`: the decisions of a warehouse as a Gymnasium environment."""
+"""`rmfs/Decision-v0`: decision problems of a warehouse as a Gymnasium environment."""
 
 from __future__ import annotations
 
@@ -34,20 +34,20 @@ LARGEST_SEED = 2**31 - 1
 class DecisionEnv(gymnasium.Env[Any, np.int64]):
     """An environment in which an episode is a run and a step is a decision of the chosen problems.
 
-    Actions 0 to k - 1 choose one of the k best candidates, in order of their ranking. Action k
-    declines: it ends a turn, or answers that there is nothing to choose. With `rule`, action k + 1
-    follows the installed rule of the problem. Questions with only one possible action are skipped.
-    An impossible action sets `info["invalid"]` and counts as declining or, where declining is
-    impossible, as action 0.
+    Actions 0 to k - 1 choose one of the k best candidates (possible answers), in order of their
+    ranking. Action k declines: it ends a turn, or answers that there is nothing to choose. With
+    `rule`, action k + 1 follows the installed rule of the problem. Questions with only one possible
+    action are skipped. An impossible action sets `info["invalid"]`. It counts as declining or,
+    where declining is impossible, as action 0.
 
-    Observations are a dictionary with `global`, shape (G,), `candidates`, shape (k, F), and
-    `action_mask`, or, if flat, one vector with the first two concatenated. The features are
-    described by `observing.global_features` and `observing.features`.
+    An observation is a dictionary with the arrays `global`, shape (G,), `candidates`, shape (k, F),
+    and `action_mask`; if `observation` is `flat`, it is one vector, the first two concatenated. The
+    attributes `observing.global_features` and `observing.features` describe the G and F features.
 
-    An episode ends with the run. Since the warehouse would continue, the episode is `truncated`;
-    `info["footprint"]` contains the measures. The time between decisions varies:
-    `info["elapsed_s"]` is the simulated time that has passed, and rewards are amounts accumulated
-    over that time.
+    An episode ends with the run. Since the warehouse would continue, the episode is `truncated`,
+    not `terminated`; `info["footprint"]` then contains the measures of the run. The time between
+    decisions varies: `info["elapsed_s"]` is the simulated time, in s, since the last decision, and
+    the reward is the amount accumulated over this time.
 
     Parameters
     ----------
@@ -56,27 +56,27 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     problems
         The problems that the agent decides, such as `["ta", "pps"]`.
     candidates
-        Number k of candidates offered.
+        Number k of candidates offered in each step.
     rankings
-        Weights by kind of question and column for ranking the candidates, instead of those of
+        Weights for ranking the candidates, by kind of question and column. They replace those of
         `rmfs.control.features.RANKINGS`.
     reward
         A name, weights by name, or a user-defined class (`rmfs.learning.rewards`).
     observation
         `dict` or `flat`.
     rule
-        Whether following the installed rule is one of the actions. Rules assume that their
-        decisions are carried out: follow the rule throughout, or treat it as advice.
+        Whether following the installed rule is one of the actions. A rule assumes that all its
+        decisions are carried out. Therefore either follow it in every step or treat it as advice.
     footprint
-        Whether to measure runs, so that `info` contains the footprint at the end; without it, steps
-        are faster by about 5 %.
+        Whether to measure runs, so that `info` contains the footprint at the end. Without
+        measurement, steps are about 5 % faster.
     render_mode
         `rgb_array` or None.
 
     Raises
     ------
     InputError
-        If an argument is wrong; the message names it and the valid values.
+        If an argument is invalid; the message names it and what would be valid.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012
@@ -141,7 +141,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return self._options
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return which actions are possible, shape (actions,), in the form used by MaskablePPO."""
+        """Return which actions are possible, shape (actions,); MaskablePPO calls this method."""
         mask = np.zeros(self.actions, np.bool_)
         if self._options is None:
             mask[self.decline] = True
@@ -153,7 +153,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start a run with the given seed, or with one drawn by the environment."""
+        """Start a run with the given seed or, without one, a seed drawn by the environment."""
         super().reset(seed=seed)
         if seed is None:
             seed = int(self.np_random.integers(LARGEST_SEED))
@@ -183,7 +183,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def render(self) -> Any:
         """Return a picture of the warehouse, shape (height, width, 3).
 
-        The result is None without `render_mode`.
+        The result is None if the environment has no `render_mode`.
         """
         if self.render_mode != "rgb_array":
             return None
@@ -192,10 +192,10 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return picture(self.run)
 
     def advised(self) -> int:
-        """Return the action that agrees with the installed rule (only with `rule`).
+        """Return the action that agrees with the installed rule; requires `rule`.
 
-        This is the candidate that the rule would choose, if it is offered; declining, if the rule
-        declines; and otherwise the action that follows the rule.
+        If the rule would choose a candidate that is offered, it is the action of this candidate. If
+        the rule would decline, it is declining. Otherwise, it is the action that follows the rule.
         """
         options = self._options
         if options is None or not self._with_rule:

@@ -1,4 +1,4 @@
-"""Episodes: simulations with a reward, created quickly one after another."""
+"""Episodes of learning: simulations with a reward, created quickly one after another."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 
 class Episode(Simulation):
-    """A simulation with a reward, which is copied together with it.
+    """A simulation, together with the reward that observes it; both are copied together.
 
     Parameters
     ----------
     reward
-        Observer that computes the value of decisions.
+        Observer that accumulates the reward.
     arguments
         As for `rmfs.Simulation`.
     """
 
     checks_layout = False
-    """The layout is checked once by `Episodes`, for all runs."""
+    """False, because `Episodes` checks the layout once for all runs."""
 
     def __init__(self, *arguments: Any, reward: Reward, **named: Any) -> None:
         self.reward = reward
@@ -41,14 +41,14 @@ class Episode(Simulation):
 class Episodes:
     """Creates episodes of one warehouse; files are read and the layout is checked only once.
 
-    A seed that is used repeatedly yields copies of the run before its first event.
+    If a seed is used repeatedly, its episodes are copies of one run before its first event.
 
     Parameters
     ----------
     layout, scenario, controllers, set
         As for `rmfs.Simulation`.
     problems
-        Problems decided outside the simulation.
+        Problems decided by the learner, outside the simulation.
     reward
         See `rmfs.learning.rewards.reward_of`.
     measured
@@ -56,7 +56,7 @@ class Episodes:
     """
 
     KEPT = 8
-    """Maximum number of runs kept in the state before their first event."""
+    """Maximum number of runs that are kept, in the state before their first event, to be copied."""
 
     def __init__(
         self,
@@ -82,7 +82,7 @@ class Episodes:
         reward_of(reward)  # reports errors early
 
     def begin(self, seed: int) -> Episode:
-        """Return a run that has not started yet."""
+        """Return a run with the given seed that has not started yet."""
         if seed in self._kept:
             return self._kept[seed].fork()
         episode = self._made(seed)

@@ -41,7 +41,8 @@ GLOBAL_FEATURES: tuple[Feature, ...] = (
     Feature("loaded_robots", "share", 1.0, "robots with a pod"),
     Feature("stored_share", "share", 1.0, "space of all pods in use"),
 )
-"""Features of the whole warehouse; followed by a one-hot encoding of the kind of question."""
+"""Features of the whole warehouse. In observations, a one-hot encoding of the kind of question
+follows."""
 
 _NONE = np.empty(0, np.intp)
 
@@ -55,11 +56,11 @@ class Options:
     decision
         The question.
     rows
-        Rows of `decision.candidates`, the best first; at most k.
+        Rows of the at most k best of `decision.candidates`, the best first.
     features
-        Scaled features, shape (k, F); rows beyond the candidates are zero.
+        Scaled features of these candidates, shape (k, F); further rows are zero.
     mask
-        Which actions are possible, shape (k + 1,); the last one declines.
+        Which actions are possible, shape (k + 1,); the last action declines.
     """
 
     decision: Decision
@@ -69,7 +70,7 @@ class Options:
 
     @property
     def kind(self) -> str:
-        """Kind of the question, one of `Observing.kinds`."""
+        """The kind of the question, one of `Observing.kinds`."""
         return kind_of(self.decision)
 
     @property
@@ -84,25 +85,26 @@ class Observing:
     Parameters
     ----------
     problems
-        The problems whose questions are asked.
+        The problems that the policy decides.
     candidates
         Number k of candidates offered.
     rankings
-        Weights of columns by kind of question, instead of `RANKINGS`.
+        Weights of columns by kind of question. They replace those of
+        `rmfs.control.features.RANKINGS`.
 
     Attributes
     ----------
     kinds
-        Kinds of question that may come.
+        Kinds of question that may be asked.
     features
-        Features of each candidate, in order.
+        Features of each candidate, in order of the columns of an observation.
     global_features
-        Features of the warehouse and the question, in order.
+        Features of the warehouse and of the question, in order of the elements of an observation.
 
     Raises
     ------
     InputError
-        If a problem, a kind or a column does not exist.
+        If `candidates` is less than 1, or a problem, kind of question or column does not exist.
     """
 
     def __init__(
@@ -136,12 +138,12 @@ class Observing:
         self._rankings = {**RANKINGS, **_checked(rankings or {})}
 
     def options(self, decision: Decision, *, may_move: bool) -> Options:
-        """Return the best candidates of a question, with their features and the mask of actions.
+        """Return the best candidates of a question, their features, and the mask of actions.
 
         Parameters
         ----------
         may_move
-            Whether robots may move idle pods.
+            Whether the task of moving an idle pod is offered in turns of TA.
         """
         kind = kind_of(decision)
         if kind == "ta" and not may_move and not has_tasks(decision.view):
@@ -201,7 +203,7 @@ class Observing:
 
 
 def kind_of(decision: Decision) -> str:
-    """Return the kind of a question; that of a turn is the name of its problem."""
+    """Return the kind of a question; the kind of a turn is the name of its problem."""
     return decision.problem.value if decision.kind == "turn" else decision.kind
 
 
@@ -222,5 +224,5 @@ def _checked(rankings: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str,
 
 
 def is_same(answer: Any, other: Any) -> bool:
-    """Whether two answers are equal."""
+    """Return whether two answers are equal."""
     return type(answer) is type(other) and bool(answer == other)

@@ -24,8 +24,8 @@ DPI = 80
 def picture(run: Kernel) -> NDArray[np.uint8]:
     """Draw the current state of a run as an RGB array, shape (height, width, 3).
 
-    Pods are drawn where they are stored, or on their robots; robots where they stand, or where they
-    will stop next.
+    Pods are drawn where they are stored, or on the robots that carry them. Robots are drawn where
+    they stand, or where they will stop next.
     """
     world = run.world
     at = [run.traffic.robot_waypoint(robot.index) for robot in world.robots]

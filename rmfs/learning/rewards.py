@@ -1,8 +1,8 @@
 """Rewards: amounts accumulated since the last decision.
 
-A reward observes the run like a measure (`rmfs.observer.Observer`) and is copied with it. The time
-between decisions varies; rewards are amounts (units, orders, metres), and `info["elapsed_s"]` is
-the time over which they accumulated.
+A reward observes the run like a measure (`rmfs.observer.Observer`) and is copied with the run.
+Rewards are amounts (units, orders, metres). The time between decisions varies; `info["elapsed_s"]`
+is the time over which an amount accumulated.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Order
 
     Wanted = str | type["Reward"] | Mapping[str, float]
-    """A name, a class, a reference to a class, or weights by name."""
+    """How a reward is selected: a name, a class, a reference to a class, or weights by name."""
 
 
 class Reward(Observer):
     """Base class of rewards: an amount that accumulates during the run.
 
-    A user-defined reward overrides the callbacks it needs and adds to `self.amount`. It must hold
-    plain data, because it is copied and saved with the run. The class is instantiated without
-    arguments.
+    A user-defined reward overrides the callbacks it needs, which add to `self.amount`. It must
+    contain only plain data, because it is copied and saved with the run. The class is instantiated
+    without arguments.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Reward(Observer):
     amount: float = 0.0
 
     def take(self) -> float:
-        """Return the amount since the last call, and reset it."""
+        """Return the amount accumulated since the last call, and reset it to 0."""
         amount, self.amount = self.amount, 0.0
         return float(amount)
 
@@ -70,10 +70,10 @@ class Orders(Reward):
 
 
 class Lateness(Reward):
-    """Minus the seconds by which an order was late, when it is completed."""
+    """Minus the tardiness, in seconds, of every order when it is completed (0 if it is on time)."""
 
     def order_completed(self, order: Order) -> None:
-        """Subtract the seconds by which the order is late."""
+        """Subtract the seconds by which the order is late, if it is."""
         self.amount -= max(0.0, order.completed_s - order.due_s)
 
 
@@ -86,7 +86,7 @@ class LateOrders(Reward):
 
 
 class Turnover(Reward):
-    """Minus the seconds from arrival to completion, when an order is completed."""
+    """Minus the seconds from arrival to completion of every order, when it is completed."""
 
     def order_completed(self, order: Order) -> None:
         """Subtract the seconds from the order's arrival to its completion."""
@@ -94,17 +94,17 @@ class Turnover(Reward):
 
 
 class Distance(Reward):
-    """Minus the metres that all robots drove."""
+    """Minus the metres driven by all robots together."""
 
     def __init__(self) -> None:
         self._known_m = 0.0
 
     def run_started(self, run: Observed) -> None:
-        """Keep a reference to the traffic model, which counts motion."""
+        """Keep a reference to the traffic model, which adds up distances."""
         self._traffic = run.traffic
 
     def warmup_ended(self, time_s: float) -> None:
-        """Reset the distance, since counting restarts."""
+        """Add the distance so far, since the traffic model begins to count from 0 again."""
         self._catch_up()
         self._known_m = 0.0
 
@@ -125,14 +125,14 @@ class Weighted(Reward):
     Parameters
     ----------
     parts
-        Pairs of a reward, which observes the run itself, and its weight.
+        Pairs of a reward and its weight. Each of these rewards observes the run itself.
     """
 
     def __init__(self, parts: list[tuple[Reward, float]]) -> None:
         self.parts = parts
 
     def take(self) -> float:
-        """Return the weighted sum of the parts."""
+        """Return the weighted sum of the amounts of the parts, and reset them to 0."""
         return sum(weight * part.take() for part, weight in self.parts)
 
 
@@ -169,7 +169,7 @@ def reward_of(wanted: Wanted) -> Reward:
 
 
 def observers_of(reward: Reward) -> list[Observer]:
-    """Return everything that has to observe the run."""
+    """Return the observers of a run for this reward: its parts if it is weighted, else itself."""
     return [part for part, _ in reward.parts] if isinstance(reward, Weighted) else [reward]
 
 

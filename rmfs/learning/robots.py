@@ -1,4 +1,4 @@
-"""Robots as agents: task allocation as a PettingZoo environment."""
+"""Task allocation as a PettingZoo environment, in which robots are the agents."""
 
 from __future__ import annotations
 
@@ -42,17 +42,19 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     """Task allocation with robots as agents; controllers decide everything else.
 
     All robots are agents at all times. A step is a turn of TA: robots that need a task, or are at
-    rest, choose what to do, in order of their numbers; the others can only wait. With S stations,
-    action 0 waits, 1 to S work for a station (PPS chooses the pod), S + 1 stores the pod (PSA
-    chooses the place), S + 2 moves an idle pod, and S + 3 rests. An action that has become
-    impossible, because an earlier robot took the work, counts as waiting.
+    rest, choose what to do, in order of their numbers; the others can only wait. Let S be the
+    number of pick and replenishment stations. Action 0 waits; actions 1 to S work for a station
+    (PPS chooses the pod); S + 1 stores the pod (PSA chooses where); S + 2 moves an idle pod
+    (repositioning chooses which); and S + 3 rests. An action that has become impossible, because a
+    robot with a lower number took the work, counts as waiting.
 
-    An observation consists of `observation`, shape (3 S + 4,), and `action_mask`. The vector
-    contains S travel times to the stations in s / 30; S numbers of units (at replenishment
-    stations, of pods with bundles) without a robot / 10; S numbers of robots at work for the
-    stations / 5; whether the robot is asked, and whether it carries a pod; the share of the run
-    that is left; and the number of waiting orders / 100. Rewards are shared: each robot
-    receives the sum.
+    An observation consists of `observation`, shape (3 S + 4,), and `action_mask`. The elements of
+    the vector are, in this order: for each station, the estimated travel time there in units of
+    30 s; for each station, the units (at replenishment stations, the pods with waiting bundles) for
+    which no robot is under way, divided by 10; for each station, the number of robots working for
+    it, divided by 5; 1 if the robot can choose an action; 1 if it carries a pod; the share of the
+    run that is left; and the number of orders in the backlog divided by 100. The reward is common:
+    every robot receives the reward of the whole warehouse.
 
     Parameters
     ----------
@@ -117,7 +119,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Start a run with the given seed, or with one drawn by the environment."""
+        """Start a run with the given seed or, without one, a seed drawn by the environment."""
         if seed is not None:
             self._random = np.random.default_rng(seed)
         else:
@@ -156,7 +158,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     def render(self) -> Any:
         """Return a picture of the warehouse, shape (height, width, 3).
 
-        The result is None without `render_mode`.
+        The result is None if the environment has no `render_mode`.
         """
         if self.render_mode != "rgb_array":
             return None

@@ -1,7 +1,7 @@
 """Training of linear rules by CMA-ES, an evolution strategy without gradients.
 
-Every weight vector makes a set of controllers. Its value is the mean objective of runs with several
-seeds, which are the same for all vectors (common random numbers).
+Every vector of weights defines a set of controllers. The value of a vector is the mean objective of
+runs with several seeds, which are the same for all vectors (common random numbers).
 """
 
 from __future__ import annotations
@@ -39,30 +39,32 @@ TRAINED: dict[Problem, dict[str, str]] = {
     Problem.PSA: {"weights": "place"},
     Problem.TA: {"weights": "ta"},
 }
-"""For each problem, the trained parameters of its linear rule, and their kinds of question."""
+"""For each problem, which parameters of its linear rule are trained, each with the kind of question
+for which it contains the weights."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A training task.
+    """A training task: what is simulated, which rules are trained, and for which objective.
 
     Attributes
     ----------
     layout, scenario, controllers
-        The simulated inputs; the controllers decide all problems that are not trained.
+        Inputs of the simulation; the controllers decide all problems that are not trained.
     problems
-        Problems to train, keys of `TRAINED`.
+        Problems whose linear rules are trained; keys of `TRAINED`.
     objective
-        Weight of each footprint column in the sum that is maximised.
+        The sum to be maximised: the weight of each of its footprint columns.
     seeds
-        Seeds of the runs of each weight vector.
+        Seeds of the runs with which each vector of weights is evaluated.
     set
-        Parameters by dotted key, as for `rmfs.simulate`.
+        Further parameters by dotted key, as for `rmfs.simulate`.
 
     Raises
     ------
     InputError
-        If a problem cannot be trained, a column does not exist, or a sequence is empty.
+        If a problem cannot be trained, a column does not exist, or `problems`, `objective` or
+        `seeds` is empty.
     """
 
     layout: str
@@ -87,13 +89,13 @@ class Task:
     def start(self) -> NDArray[np.float64]:
         """Return the default weights of the linear rules as one vector.
 
-        The weights of each kind of question are divided by the greatest absolute value among them.
+        The weights for each kind of question are divided by the greatest of their absolute values.
         """
         found = [list(default_weights(kind).values()) for kind in self._kinds()]
         return np.concatenate([np.array(one) / max(map(abs, one)) for one in found])
 
     def settings(self, weights: NDArray[np.float64]) -> ControllerSettings:
-        """Return the controllers with these weights."""
+        """Return the set of controllers whose linear rules have these weights."""
         overrides = [
             (key.split(".")[1:], value)
             for key, value in self.set.items()
@@ -114,7 +116,7 @@ class Task:
         return ControllerSettings("linear", told, choices)
 
     def worth(self, weights: NDArray[np.float64], seed: int) -> float:
-        """Simulate one run and return the objective; a column that is not finite counts as 0."""
+        """Simulate one run and return its objective; a column that is not finite counts as 0."""
         given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", IdleRuleWarning)  # some weight vectors are bad
@@ -133,11 +135,13 @@ class Trained:
     Attributes
     ----------
     settings
-        The trained controllers, to be written with `rmfs.control.toml.to_toml`.
+        The trained controllers, which `rmfs.control.toml.to_toml` converts to a file.
     value, start_value
-        Mean of the objective over the training seeds, with the trained and the default weights.
+        Mean objective over the training seeds, with the trained and with the default weights.
     history
-        One row per generation: `generation`, `best`, `mean`, `runs` and `wall_s` so far.
+        One row per generation: its number (`generation`), the best and the mean value of its
+        vectors (`best`, `mean`), and the number of runs and the wall time in s up to its end
+        (`runs`, `wall_s`).
     """
 
     settings: ControllerSettings
@@ -156,21 +160,22 @@ def train(
     jobs: int = 1,
     told: Callable[[str], None] | None = None,
 ) -> Trained:
-    """Train the weights of linear rules.
+    """Train the weights of linear rules, and return the best weights found.
 
     Parameters
     ----------
     generations, population
-        Generations of the evolution, and weight vectors per generation; each is simulated with all
-        seeds.
+        Number of generations, and of vectors of weights per generation; each vector is simulated
+        with all seeds.
     spread
-        Initial standard deviation of the weights, whose initial values are at most 1.
+        Initial standard deviation of the weights. The greatest initial weight for each kind of
+        question has the absolute value 1.
     seed
         Seed of the evolution; the result does not depend on the number of processes.
     jobs
         Number of processes.
     told
-        Called with a line of text after each generation.
+        Function called with a line of text after each generation.
 
     Raises
     ------
@@ -215,7 +220,7 @@ def train(
 
 
 def named(trained: Trained, name: str, description: str) -> ControllerSettings:
-    """Return the controllers with a name and a description."""
+    """Return the trained controllers with another name and description."""
     return replace(trained.settings, name=name, description=description)
 
 

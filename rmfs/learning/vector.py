@@ -1,4 +1,4 @@
-"""Many environments in parallel, as a vector environment of Gymnasium."""
+"""Several environments in parallel, as a vector environment of Gymnasium."""
 
 from __future__ import annotations
 
@@ -26,14 +26,15 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     """Several `DecisionEnv` in worker processes, with observations in shared memory.
 
     Environments are divided among the processes, and `step` waits for the slowest process. The time
-    from one decision to the next varies greatly; with 8 or more environments per process, the
-    differences even out.
+    needed to simulate up to the next decision varies greatly. With 8 or more environments per
+    process, the differences between processes are small.
 
     The step after the last one of an episode starts the next episode, whatever its action, with
-    reward 0 (Gymnasium's mode `NEXT_STEP`). `info` has arrays of shape (N,): `elapsed_s`, `now_s`,
-    `invalid` and `kind` (one of `kinds`); `action_mask` of shape (N, actions); and, after the last
-    step of episodes, `footprint` with the mask `_footprint`. `reset(seed=s)` gives environment i
-    the seed s + i, so that it behaves like a `DecisionEnv` with that seed.
+    reward 0 (Gymnasium's mode `NEXT_STEP`). `info` contains the arrays `elapsed_s`, `now_s`,
+    `invalid` and `kind` (one of `kinds`), each of shape (N,), and `action_mask`, shape (N,
+    actions). If episodes have just ended, it also contains their footprints in `footprint`, with
+    the mask `_footprint`. `reset(seed=s)` gives environment i the seed s + i, so that it behaves
+    like a `DecisionEnv` with that seed.
 
     Parameters
     ----------
@@ -42,12 +43,12 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     workers
         Number of processes. Default: one per core, at most N.
     given
-        As for `DecisionEnv`.
+        All other arguments of `DecisionEnv`.
 
     Raises
     ------
     InputError
-        If an argument is wrong.
+        If an argument is invalid.
     """
 
     metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP}  # noqa: RUF012

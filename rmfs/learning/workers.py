@@ -1,4 +1,4 @@
-"""Worker processes of environments, which share memory for observations and actions."""
+"""Worker processes of environments; observations and actions are in shared memory."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 Shapes = dict[str, tuple[tuple[int, ...], str]]
 
 FEW_COLLECTIONS = 50_000
-"""Number of allocations between garbage collections; large, as runs create few cycles."""
+"""Allocations between two garbage collections: many, as runs create few reference cycles."""
 
 
 def shapes_of(env: DecisionEnv) -> Shapes:
-    """Return shape and type of the inputs and outputs of an environment, by name."""
+    """Return shape and type of each input and output of an environment, by name."""
     space = env.observation_space
     parts: dict[str, Any] = dict(space.spaces) if isinstance(space, spaces.Dict) else {"": space}
     return {
@@ -52,7 +52,7 @@ class Board:
     shapes
         Shapes for one environment.
     buffers
-        Memory by name, from `multiprocessing.RawArray`.
+        Shared memory by name, from `multiprocessing.RawArray`.
     """
 
     shapes: Shapes
@@ -93,7 +93,7 @@ class Stand:
     given
         Arguments for creating environments.
     places
-        Rows of the shared memory.
+        Rows of the shared memory that belong to these environments.
     """
 
     def __init__(self, given: Mapping[str, Any], board: Board, places: range) -> None:
@@ -109,7 +109,7 @@ class Stand:
         return {}
 
     def step(self) -> dict[int, Any]:
-        """Carry out the actions in shared memory; start the next run where one had ended.
+        """Carry out the actions in shared memory; start the next run where a run had ended.
 
         Returns
         -------

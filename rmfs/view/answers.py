@@ -1,4 +1,4 @@
-"""The servers of recorded runs and of a live run."""
+"""The servers that answer pages about recorded runs, or about a live run."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 def replay_server(
     runs: Sequence[RunFolder], port: int = 0, starter: Starter | None = None
 ) -> Server:
-    """Return a server of recorded runs, side by side if there are several.
+    """Return a server that shows recorded runs, side by side if there are several.
 
-    With a starter, the page has a form that starts runs; without runs, it has only that form. A run
-    is read again for each request, so that a reloaded page shows its present state. If the run
-    cannot be read, the answer states why.
+    With a starter, the page has a form that starts runs; if there are no recorded runs, the page
+    has only that form. A run is read again for each request, so that a reloaded page shows its
+    present state. If the run cannot be read, the answer states why.
 
     Raises
     ------
@@ -45,7 +45,7 @@ def replay_server(
 
 
 def live_server(run: LiveRun, port: int = 0) -> Server:
-    """Return a server of a live run; raises InputError if the port cannot be used."""
+    """Return a server that shows a live run; raise InputError if the port cannot be used."""
     session = {"runs": 1, "live": True, "form": False}
     problems = {name: one for name, one in forms.problems().items() if name not in FIXED}
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rmfs.control.choices import Choice
 
 MOST_ROWS = 1 << 48
-"""Largest number of rows that a page may state; no trace has as many."""
+"""Largest number of rows that a page may claim to have; no trace has as many."""
 
 LONGEST_NAME = 64
 """Maximum length of the name of a page."""
@@ -25,12 +25,12 @@ LONGEST_NAME = 64
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """The number of rows of the trace, and of events, that a page already has.
+    """The numbers of rows of the trace, and of events, that a page already has.
 
     Raises
     ------
     InputError
-        If these are not valid numbers of rows.
+        If a number is negative or greater than `MOST_ROWS`.
     """
 
     motion: int = 0
@@ -45,7 +45,7 @@ class Known:
 
 @dataclass(eq=False)
 class Request:
-    """A task that the run's thread does for a page; if it fails, the page receives the error."""
+    """A task that the thread of the run does for a page, which receives the error if it fails."""
 
     done: threading.Event = field(default_factory=threading.Event)
     error: Exception | None = None
@@ -64,7 +64,7 @@ class Request:
 
 @contextmanager
 def concern_of(request: Request) -> Iterator[None]:
-    """Return a context for executing a page's request, which is done at its end.
+    """Return a context in which to carry out a page's request; its end marks the request as done.
 
     An error is passed to the page and does not stop the run.
     """
@@ -77,7 +77,7 @@ def concern_of(request: Request) -> Iterator[None]:
 
 @dataclass(eq=False)
 class News(Request):
-    """A request for news, and the data that the run's thread copied for it."""
+    """A request for new motion and events, with the data that the run's thread copied for it."""
 
     known: Known = field(default_factory=Known)
     motion: dict[str, NDArray[Any]] = field(default_factory=dict)
@@ -98,7 +98,7 @@ def page_name(page: object) -> str:
     Raises
     ------
     InputError
-        If `page` is anything else.
+        If `page` is not such a name.
     """
     if not isinstance(page, str) or not 0 < len(page) <= LONGEST_NAME:
         raise InputError(f"page: must be a name of at most {LONGEST_NAME} characters")

@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 MOST_RUNS = 2
 
 PAGE_PATIENCE_S = 10.0
-"""Wall time that a run waits for the page opened to watch it, in s."""
+"""Longest wall time, in s, that a run waits at its start for a page that watches it."""
 
 FAREWELL_S = 3.0
-"""Wall time for which pages can still load the end of a run, in s."""
+"""Longest wall time, in s, for which pages can still load the end of a run."""
 
 
 def serve_runs(paths: list[Path], *, port: int = 0, open_browser: bool = True) -> None:
-    """Serve up to two runs on loopback until interrupted, and a form that starts others.
+    """Serve up to two runs, and a form that starts others, on loopback until interrupted.
 
     Raises
     ------
     InputError
-        If there are more than two runs, one cannot be shown, or the port is in use; all of this is
-        checked before serving.
+        If there are more than two runs, a run cannot be shown, or the port is in use; these
+        conditions are checked before serving.
     """
     runs = _loaded(paths)
     for run in runs:
@@ -63,18 +63,19 @@ def watched(
     open_browser: bool = True,
     await_page: bool = False,
 ) -> Iterator[LiveRun]:
-    """Serve a live run on loopback; yield its `LiveRun`, whose observer and driver the run needs.
+    """Serve a live run on loopback; yield its `LiveRun`, which is to observe and drive the run.
 
     Parameters
     ----------
     inputs
-        Layout, scenario and controllers as the user named them.
+        Layout, scenario and controllers, as the user named them.
     title
         Title of the run on the page.
     speed
         Initial speed in simulated seconds per wall second. Default: as fast as possible.
     await_page
-        Whether to wait a moment for a page before the run begins, even if this call opens none.
+        Whether to wait for a page, at most `PAGE_PATIENCE_S`, before the run begins, even if this
+        call opens none.
 
     Raises
     ------
@@ -102,7 +103,7 @@ def export_runs(paths: list[Path], target: Path) -> None:
     Raises
     ------
     InputError
-        If there are more than two runs, one cannot be shown, or the file cannot be written.
+        If there are more than two runs, a run cannot be shown, or the file cannot be written.
     """
     export(_loaded(paths), target)
 

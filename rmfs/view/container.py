@@ -1,7 +1,8 @@
 """The binary container in which a scene is sent to the page: a JSON header and arrays.
 
-It consists of eight magic bytes, the length of the header (8 bytes, little-endian), the header, and
-the arrays, each starting at a multiple of eight bytes so that the page can use them in place.
+It consists of eight fixed bytes that identify the format, the length of the header (8 bytes,
+little-endian), the header, and the arrays. Each array starts at a multiple of eight bytes, so that
+the page can use it without copying.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ FORMAT = "rmfs-scene/1"
 MIME = "application/vnd.rmfs.scene"
 
 TYPES = {"|u1": "u1", "<i4": "i4", "<f4": "f4", "<f8": "f8"}
-"""Supported element types, by NumPy's name."""
+"""Names of the supported element types in the header, by NumPy's name."""
 
 
 def pack(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes:
@@ -30,8 +31,8 @@ def pack(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes
     Parameters
     ----------
     header
-        Values that JSON can represent; `format`, `size` and `arrays` (type, offset and length of
-        each) are added.
+        Values that JSON can represent. This function adds `format`, `size` and `arrays` (type,
+        offset and length of each array).
     arrays
         One-dimensional arrays of unsigned bytes, 32-bit integers, and 32- or 64-bit reals.
     """
@@ -64,7 +65,7 @@ def unpack(content: bytes) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
     Raises
     ------
     ValueError
-        If the bytes are not a container, or it is truncated.
+        If the bytes are not a container, or the container is truncated.
     """
     if content[:8] != MAGIC:
         raise ValueError("not a scene")

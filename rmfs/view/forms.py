@@ -31,7 +31,7 @@ PARTS: dict[str, instances.Kind] = {
 
 
 def names() -> dict[str, list[str]]:
-    """Return the names of the shipped layouts, scenarios and sets of controllers, by part."""
+    """Return the names of the shipped `layout`, `scenario` and `controllers` files, by part."""
     return {part: instances.names(kind) for part, kind in PARTS.items()}
 
 
@@ -50,12 +50,12 @@ def shipped(part: str, name: str) -> str:
 
 
 def form(chosen: dict[str, str]) -> dict[str, Any]:
-    """Return the contents of the form for the chosen files.
+    """Return the contents of the form for the chosen layout, scenario and controllers.
 
     Parameters
     ----------
     chosen
-        Names of layout, scenario and controllers. Default of each: `default`.
+        Names of the chosen layout, scenario and controllers. Default of each: `default`.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A live run, and the exchange of requests and data between its thread and those of its pages.
+"""A live run, and the exchange of requests and data between its thread and those of pages.
 
 Only the run's own thread accesses the simulation. Pages leave their requests here, and the run
 processes them between two instants. Data for a page are copied in the run's thread and packed in
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
     from rmfs.simulation.kernel import Kernel
 
 ABSENT_S = 90.0
-"""Time without a request after which a page counts as gone, in s; a hidden page may ask only once a
-minute."""
+"""Wall time, in s, without a request after which a page counts as gone. A hidden page may ask only
+once a minute."""
 
 BETWEEN_NEWS_S = 0.15
-"""Processor time that a run without a speed limit gets between two answers to pages, in s."""
+"""Processor time, in s, that a run without a speed limit gets between two answers to pages."""
 
 LONGEST_WAIT_S = 1.0
-"""Wall time after which a page is answered in any case, in s."""
+"""Wall time, in s, after which a page is answered even if the run has had less processor time."""
 
 MOST_PAGES = 1000
-"""Maximum number of pages of one run."""
+"""Maximum number of pages that watch one run."""
 
 FIXED = frozenset({Problem.PP})
 """Problems whose controllers cannot be exchanged, as they own the robots' plans."""
@@ -53,17 +53,17 @@ class LiveRun:
     Parameters
     ----------
     names
-        Layout, scenario and controllers as the user named them.
+        Layout, scenario and controllers, as the user named them.
     title
         Title of the run on the page.
     speed
-        Simulated seconds per wall second at the beginning, and again once the last page has left.
+        Simulated seconds per wall second, at the beginning and again after the last page has left.
         Default: as fast as possible.
 
     Attributes
     ----------
     events
-        The observer to pass to `rmfs.simulate`, with `drive` as the driver.
+        The observer to pass to `rmfs.simulate`, together with `drive` as the driver.
 
     Raises
     ------
@@ -104,9 +104,9 @@ class LiveRun:
         return self.limit_us(now_us) if self._braking else NEVER_US
 
     def limit_us(self, now_us: int) -> int:
-        """Return the latest time that may be simulated now, in us; wait while there is none.
+        """Return the simulated time, in us, up to which the run may advance now.
 
-        That is while the run is paused, or ahead of its speed.
+        This method waits while the run is paused or ahead of its speed.
         """
         with self._meeting:
             while True:
@@ -199,12 +199,13 @@ class LiveRun:
     def news(self, known: Known, page: str = "") -> bytes:
         """Return the packed motion and events that a page does not know yet.
 
-        A row of motion replaces all that the page knows of the row's robot from its start on.
+        A row of motion replaces all that the page knows about the motion of this robot after the
+        start of the row.
 
         Parameters
         ----------
         known
-            What the page has.
+            Numbers of rows that the page already has.
         page
             Name of the page that asks, so that its absence is noticed.
 
@@ -226,11 +227,11 @@ class LiveRun:
         )
 
     def control(self, wish: Table) -> None:
-        """Pause, step or resume: `{"do": "pause" | "step" | "run", "by_s": ..., "speed": ...}`.
+        """Pause, step or resume as requested by `{"do": "pause" | "step" | "run", ...}`.
 
-        `by_s` is the length of a step in simulated seconds (0: to the next event), and `speed` is
-        in simulated seconds per wall second (None: as fast as possible). `page` may name the
-        sender, so that late requests from a closed page are ignored.
+        For `step`, `by_s` is the length of the step in simulated seconds (0: to the next event).
+        For `run`, `speed` is in simulated seconds per wall second (None: as fast as possible).
+        `page` may name the sender, so that late requests from a closed page are ignored.
 
         Raises
         ------
@@ -266,8 +267,8 @@ class LiveRun:
         Raises
         ------
         InputError
-            If the problem's controller cannot be exchanged, there is no such rule, it does not fit
-            the run or the other controllers, or the run has ended.
+            If the controller of the problem cannot be exchanged, there is no such rule, the rule
+            does not fit the run or the other controllers, or the run has ended.
         """
         if problem not in set(Problem) - FIXED:
             raise InputError(f"{problem}: cannot be exchanged while a run goes on")
@@ -291,7 +292,7 @@ class LiveRun:
                 self._leave(page)
 
     def close(self, reason: str) -> None:
-        """Answer pending requests, and report from now on that the run has ended, with a reason."""
+        """Answer pending requests; from now on, report that the run has ended, and why."""
         with self._meeting:
             if self._ended:
                 return
@@ -312,7 +313,7 @@ class LiveRun:
     def await_farewell(self, patience_s: float) -> None:
         """Wait until all pages have left, at most `patience_s` seconds of wall time.
 
-        They can load the end of the run meanwhile.
+        Meanwhile, the pages can load the end of the run.
         """
         end_s = time.monotonic() + patience_s
         # a page that is still being built has not said yet that it is there

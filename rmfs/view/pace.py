@@ -8,16 +8,16 @@ from rmfs.errors import InputError
 from rmfs.simulation.agenda import NEVER_US
 
 QUANTUM_S = 0.02
-"""Wall time between two advances of a run with limited speed, in s."""
+"""Wall time, in s, between two advances of a run with limited speed."""
 
 LAGGING_S = 0.5
-"""Lag in wall time, in s, beyond which a run does not try to catch up."""
+"""Lag of a run behind its speed, in s of wall time, beyond which it does not try to catch up."""
 
 FASTEST = 1e6
-"""Largest speed that can be set, in simulated seconds per wall second; the smallest is 1 / this."""
+"""Largest speed, in simulated seconds per wall second; the smallest is its reciprocal."""
 
 LONGEST_STEP_S = 1e9
-"""Maximum simulated time of one step, in s (30 years)."""
+"""Maximum simulated time of one step, in s (about 30 years)."""
 
 
 class Pace:
@@ -49,7 +49,7 @@ class Pace:
         return self.speed is None and not self.paused
 
     def run(self, speed: float | None) -> None:
-        """Resume at a given speed; None: as fast as possible."""
+        """Resume at a speed in simulated seconds per wall second; None: as fast as possible."""
         _check(speed)
         self.speed, self.paused = speed, False
         self._since = self._until_us = None
@@ -62,7 +62,7 @@ class Pace:
         self._one_event = False
 
     def step(self, now_us: int, by_s: float = 0.0) -> None:
-        """Advance by some simulated time in s (0: to the next event), then pause.
+        """Let the run advance by a simulated time in s (0: to the next event), and then pause.
 
         Raises
         ------
@@ -78,11 +78,11 @@ class Pace:
             self._one_event = True
 
     def let_go(self) -> None:
-        """Resume at the initial speed, as no page is left."""
+        """Resume at the initial speed, because no page is left."""
         self.run(self._usual)
 
     def limit_us(self, now_us: int, wall_s: float) -> int | None:
-        """Return the simulated time in us to which the run may advance; None if it must wait.
+        """Return the simulated time in us up to which the run may advance; None if it must wait.
 
         Parameters
         ----------
@@ -106,7 +106,7 @@ class Pace:
     def wait_s(self, now_us: int, wall_s: float) -> float | None:
         """Return the wall time in s after which to call `limit_us` again.
 
-        None if only a request can change its result.
+        Return None if only a request can change the result of `limit_us`.
         """
         if self.paused or self.speed is None:
             return None

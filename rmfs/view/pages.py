@@ -13,7 +13,7 @@ FILES = {
     "/app.js": ("app.js", "text/javascript; charset=utf-8"),
     "/app.css": ("app.css", "text/css; charset=utf-8"),
 }
-"""Name and media type of the only files that are served, by path of the request."""
+"""The only files that are served: name and media type, by path of the request."""
 
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
@@ -28,12 +28,12 @@ def content(name: str) -> bytes:
 
 
 def single_file(scenes: list[bytes]) -> bytes:
-    """Return the page with script, style and scenes inside, and a policy that allows only these.
+    """Return the page with script, style and scenes inside, and a policy that permits only these.
 
     Parameters
     ----------
     scenes
-        Containers compressed by gzip, one per run.
+        Scenes, one per run: containers compressed by gzip.
     """
     script = content("app.js").replace(b"</script", b"<\\/script")
     style = content("app.css")

@@ -23,7 +23,7 @@ def preview(wish: Table) -> bytes:
     Parameters
     ----------
     wish
-        `layout` is the name of a shipped layout; `set` holds values by key, of which only those
+        `layout` is the name of a shipped layout. `set` contains values by key, of which only those
         of the layout are used.
 
     Raises

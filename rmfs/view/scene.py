@@ -1,6 +1,6 @@
 """The scene that a page draws: layout, motion and events of a run, as a header and flat arrays.
 
-Nothing is sampled: the page gets every piece of motion, and computes positions with the same
+Motion is not sampled: the page gets every piece of motion, and computes positions by the same
 kinematics as the traffic core.
 """
 
@@ -83,7 +83,7 @@ def head(
     Parameters
     ----------
     details
-        The texts to which the column `detail` of the events refers.
+        The texts to which the numbers in the column `detail` of the events refer.
     sku_names
         Names of all SKUs; empty if SKUs have only numbers.
     """
@@ -138,7 +138,7 @@ def _of_visits(layout: Layout) -> dict[str, str]:
 
 
 def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:
-    """Return the layout as arrays; `sku_space` gives the space units of one unit of each SKU."""
+    """Return the layout as arrays, together with `sku_space`: space units per unit of each SKU."""
     return {
         "x_m": layout.x_m.astype(np.float64),
         "y_m": layout.y_m.astype(np.float64),
@@ -181,7 +181,7 @@ def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
 
 
 def happenings(events: Mapping[str, NDArray[Any]]) -> Arrays:
-    """Return events, in the order given, as arrays; kinds and details are numbers."""
+    """Return events as arrays, in the order given; kinds and details are given as numbers."""
     return {
         "events.time_us": events["time_us"].astype(np.float64),
         "events.kind": events["kind"].astype(np.uint8),

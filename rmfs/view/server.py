@@ -1,12 +1,12 @@
 """The server of the page and its runs, on the loopback interface only.
 
-Valid paths are a fixed table and are never looked up in the file system, so no path leads out of
-the run folder. Requests that name another host (DNS rebinding) or come from another origin
-(`Sec-Fetch-Site`, `Origin`) are refused. Requests that change something need a token, which is part
-of the printed address. Other users of the machine can reach the port but do not have the token:
-they can watch, but no run waits for them. The number of connections and the size of requests are
-limited, and slow clients are disconnected. An error in a request is answered and does not affect
-other requests.
+The valid paths are those of a fixed table and are never looked up in the file system, so no path
+leads out of the run folder. Requests that name another host (DNS rebinding) or come from another
+origin (`Sec-Fetch-Site`, `Origin`) are refused. Requests that change something need a token, which
+is part of the printed address. Other users of the machine can reach the port but do not have the
+token: they can watch, but no run waits for them. The number of connections and the size of requests
+are limited, and slow clients are disconnected. An error in a request is answered and does not
+affect other requests.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ HOST = "127.0.0.1"
 LONGEST_REQUEST = 1_000_000
 """Maximum size of a request body in bytes."""
 MOST_CONNECTIONS = 64
-"""Maximum number of open connections; a page uses at most six. Idle connections are closed in
+"""Maximum number of open connections. A page uses at most six; idle connections are closed in
 favour of new ones."""
 PATIENCE_S = 20.0
-"""Wall time after which a connection that has not sent a request is closed, in s."""
+"""Wall time, in s, after which a connection that has not sent a request is closed."""
 
 JSON = "application/json"
 
@@ -58,7 +58,7 @@ class Answer:
 
     @classmethod
     def scene(cls, packed: bytes) -> Answer:
-        """Create an answer from a container."""
+        """Create an answer from a packed scene."""
         return cls(packed, container.MIME)
 
 
@@ -68,14 +68,14 @@ class Server(ThreadingHTTPServer):
     Parameters
     ----------
     get, post
-        Handlers by path: functions of the query, or of the JSON sent.
+        Handlers of GET and POST requests by path: functions of the query, or of the JSON sent.
     port
         Port to use. Default: any free one.
 
     Attributes
     ----------
     token
-        Token that permits requests that change something.
+        Secret that a page must know to make requests that change something.
 
     Raises
     ------
@@ -110,11 +110,11 @@ class Server(ThreadingHTTPServer):
 
     @property
     def cookie(self) -> str:
-        """Name of the cookie with the token; it contains the port, as all ports share cookies."""
+        """Name of the cookie with the token; the name contains the port, as ports share cookies."""
         return f"rmfs-{self.server_port}"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in a thread of its own, unless there are too many."""
+        """Serve a connection in a thread of its own, unless too many are open."""
         with self._lock:
             crowded, full = self._open >= MOST_CONNECTIONS, self._open >= 2 * MOST_CONNECTIONS
             idle = min(self._reading, key=self._reading.__getitem__, default=None)

@@ -24,7 +24,7 @@ PATIENCE_S = 60.0
 
 
 class Starter:
-    """Starts runs as `rmfs run --live` does, and stops unfinished ones when it is closed.
+    """Starts runs as `rmfs run --live` does, and stops unfinished runs when it is closed.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Starter:
         ------
         InputError
             If a value is invalid, too many runs are in progress, or the run ends before it has a
-            page; the message then is the run's.
+            page; in the last case, the message is that of the run.
         """
         arguments = _arguments(wish, self._results)
         with self._lock:
@@ -69,7 +69,7 @@ class Starter:
         return _address(run)
 
     def close(self) -> None:
-        """Stop unfinished runs and wait for their ends; none leaves a half-written folder."""
+        """Stop unfinished runs and wait for their end; none leaves a half-written folder."""
         for run in self._running:
             if run.poll() is None:
                 run.terminate()  # as Ctrl-C: what is half-written goes

@@ -1,8 +1,9 @@
 """The colours of the page, for a light and a dark theme.
 
-Stations, tasks of robots and delay are distinguished by hue and lightness: stations are darker than
-robots in the light theme and lighter in the dark one, and delay has its own scale. A test ensures
-that they can be told apart with common kinds of colour blindness and contrast with the floor.
+The colours of stations, tasks of robots and delay differ in hue and lightness: stations are darker
+than robots in the light theme and lighter in the dark theme, and delay has a scale of its own. A
+test ensures that people with common kinds of colour blindness can distinguish them, and that they
+contrast with the floor.
 """
 
 from __future__ import annotations
@@ -29,12 +30,12 @@ class Theme:
     pod, elevator
         Colours of pods and of elevators.
     towards, share
-        The colour of a station of another kind is that of its kind, mixed with this share of
-        `towards`.
+        For stations other than pick and replenishment stations, the colour of their kind is mixed
+        with the colour `towards`, of which it gets this share.
     stations, tasks
-        Colours by kind of station and by task.
+        Colours of stations by kind, and of robots by task.
     delay
-        Colours of robots, from no delay to long delay.
+        Colours of robots by delay, from none to long.
     """
 
     floor: str
@@ -84,12 +85,12 @@ THEMES = {
 
 
 def themes_of(layout: Layout, visits: Mapping[str, str]) -> dict[str, Any]:
-    """Return the colours for a layout by theme: of stations, tasks, pods, elevators and delay.
+    """Return, for each theme, the colours of a layout's stations, tasks, pods, elevators and delay.
 
     Parameters
     ----------
     visits
-        Colours of robots on their way to stations of other kinds, by task.
+        Colours of robots whose task is a visit to a station of another kind, by task.
     """
     return {
         name: {

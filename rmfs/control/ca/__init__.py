@@ -18,11 +18,11 @@ P = TypeVar("P", bound=Parameters)
 
 
 class ChargeAssignment(Controller[P]):
-    """Sends robots without a pod to stations where they get energy, and away again.
+    """Sends robots without a pod to energy stations, and decides when they leave.
 
-    It is asked before TA, about the robots of `view.asking` and `view.resting`, and only in runs
-    whose robots have batteries (`view.batteries`). A robot that could not complete another task and
-    then reach an energy station is sent there in any case, whatever the rule decides.
+    It decides before TA, about the robots of `view.asking` and `view.resting`, and only in runs
+    whose robots have batteries (`view.batteries`). Independently of the rule, the simulation sends
+    a robot to an energy station if its charge may not suffice for another task and the trip there.
     """
 
     problem = Problem.CA
@@ -30,8 +30,11 @@ class ChargeAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield decisions: robots to be sent to charge, and robots to leave a plug-in place."""
+        """Yield decisions that send robots to charge or make them leave a plug-in place."""
 
     def target_share(self) -> float:
-        """Level (share of capacity) up to which a robot charges if it is sent in any case."""
+        """Return the level (share of capacity) to charge up to if the simulation sends a robot.
+
+        The simulation does so independently of the rule if the charge of a robot is low.
+        """
         return 0.8

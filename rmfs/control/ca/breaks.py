@@ -23,13 +23,14 @@ class BreaksParameters(LevelParameters):
     """Parameters of CA breaks."""
 
     below_share: Share = 0.25
-    """A robot below this level charges outside breaks, too."""
+    """Outside breaks, a robot charges if its level is below this share of the capacity."""
     until_share: Level = 0.9
-    """Level up to which robots charge."""
+    """Level (share of capacity) up to which robots charge."""
     breaks_s: tuple[Break, ...] = ((14400.0, 16200.0), (28800.0, 30600.0))
-    """Breaks as pairs of start and end within a cycle, in seconds, in order."""
+    """Breaks as pairs of start and end, in seconds since the start of a cycle, in order of time."""
     cycle_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 43200.0
-    """Seconds after which breaks repeat; the clock is that of the scenario."""
+    """Length of a cycle in seconds, after which the breaks repeat; the first cycle begins at
+    midnight of the scenario's clock."""
 
     @pydantic.model_validator(mode="after")
     def _breaks_in_order(self) -> BreaksParameters:
@@ -40,9 +41,9 @@ class BreaksParameters(LevelParameters):
 
 
 class Breaks(ByLevel[BreaksParameters]):
-    """Sends robots without work to charge during breaks, and robots whose level is low at any time.
+    """Sends robots without work to charge during breaks; else, only those with a low level.
 
-    This is known as interim charging. If there are more robots than places, they queue.
+    This is known as interim charging. Robots in excess of the charging places wait in queues.
     """
 
     parameters_model = BreaksParameters
@@ -62,12 +63,12 @@ class Breaks(ByLevel[BreaksParameters]):
         return min(start for start in starts if start > now_s) - view.time_of_day_s
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level during a break or if the robot's level is low, else 0."""
+        """Return `until_share` during a break or if the robot's level is low, else 0."""
         given = self.parameters
         time_s = (self.view.now_s + self.view.time_of_day_s) % given.cycle_s
         is_break = any(start <= time_s < end for start, end in given.breaks_s)
         return given.until_share if is_break or share < given.below_share else 0.0
 
     def target_share(self) -> float:
-        """The upper level, `until_share`."""
+        """Return the level up to which robots charge, `until_share`."""
         return self.parameters.until_share

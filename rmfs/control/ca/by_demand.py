@@ -21,15 +21,16 @@ class ByDemandParameters(LevelParameters):
     """Parameters of CA by-demand."""
 
     below_share: Share = 0.25
-    """Level below which a robot charges while many orders arrive."""
+    """Level (share of capacity) below which a robot charges while many orders arrive."""
     calm_below_share: Share = 0.6
-    """Level below which a robot charges while few orders arrive."""
+    """Level (share of capacity) below which a robot charges while few orders arrive."""
     until_share: Level = 0.8
-    """Level up to which it charges."""
+    """Level (share of capacity) up to which a robot charges."""
     window_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 900.0
     """Length in seconds of the window in which arrivals are counted."""
     calm_share: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.8
-    """Demand is low if the rate in the window is below this share of the mean rate of the run."""
+    """Arrivals count as few if their rate in the window is below this share of the mean rate since
+    the rule was installed."""
 
     @pydantic.model_validator(mode="after")
     def _calm_in_order(self) -> ByDemandParameters:
@@ -42,9 +43,9 @@ class ByDemandParameters(LevelParameters):
 
 
 class ByDemand(ByLevel[ByDemandParameters]):
-    """Sends robots to charge at a higher level while few orders arrive than while many arrive.
+    """Sends robots to charge earlier, at a higher level, while few orders arrive.
 
-    Fewer robots then need to charge while many orders arrive.
+    As a result, fewer robots need to charge while many orders arrive.
     """
 
     parameters_model = ByDemandParameters
@@ -64,19 +65,20 @@ class ByDemand(ByLevel[ByDemandParameters]):
         self._count += 1
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level if the robot is below the lower level that applies now, else 0."""
+        """Return `until_share` if the robot's level is below the present threshold, else 0."""
         given = self.parameters
         low = given.calm_below_share if self.is_calm() else given.below_share
         return given.until_share if share < low else 0.0
 
     def target_share(self) -> float:
-        """The upper level, `until_share`."""
+        """Return the level up to which robots charge, `until_share`."""
         return self.parameters.until_share
 
     def is_calm(self) -> bool:
-        """Whether few orders arrived in the last window; never before two windows have passed.
+        """Return whether few orders arrived in the last window.
 
-        `calm_share` compares their rate with the mean rate since the rule was installed.
+        This is so if their rate is below `calm_share` times the mean rate since the rule was
+        installed; it is never so before two windows have passed.
         """
         now_s, window_s = self.view.now_s, self.parameters.window_s
         while self._arrivals and self._arrivals[0] < now_s - window_s:

@@ -1,4 +1,4 @@
-"""Shared parts of CA rules: charge levels, choice of a place, and leaving it to another robot."""
+"""Shared parts of CA rules: charge levels, choice of a charging place, and handing it over."""
 
 from __future__ import annotations
 
@@ -26,19 +26,20 @@ class PlaceParameters(Parameters):
     """Parameters of all rules that send robots to charging places."""
 
     place: PlaceRule = "least-queued"
-    """Choice of the place: `least-queued`, `nearest`, or the one that is free `soonest`."""
+    """Choice of the charging place: `least-queued` (fewest robots there or on their way),
+    `nearest`, or `soonest` (least total charging time of these robots)."""
     hand_over_share: Level | None = None
-    """A charging robot gives up its place to a waiting one whose level is lower by at least this
-    share of the capacity; default: never."""
+    """A charging robot gives up its place if its level exceeds that of a waiting robot by more than
+    this share of the capacity and suffices for any task. Default: never."""
 
 
 class LevelParameters(PlaceParameters):
     """Parameters of rules with two levels."""
 
     below_share: Share = 0.3
-    """A robot charges when its level falls below this."""
+    """A robot charges when its level falls below this share of the capacity."""
     until_share: Level = 0.8
-    """Level up to which it charges."""
+    """Level (share of capacity) up to which a robot charges."""
 
     @pydantic.model_validator(mode="after")
     def _in_order(self) -> LevelParameters:
@@ -58,13 +59,13 @@ class ByLevel(ChargeAssignment[P]):
 
     @abstractmethod
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Level up to which a robot with level `share` should charge now; 0 if it should not.
+        """Return the level up to which a robot with level `share` should charge now, or 0.
 
-        Levels are shares of the capacity.
+        Levels are shares of the capacity; 0 means that the robot should not charge.
         """
 
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield robots to be sent to charge, then robots that give up their places to others."""
+        """Yield decisions that send robots to charge, then those by which robots give up places."""
         batteries = self.view.batteries
         if batteries is None:
             return
@@ -74,7 +75,7 @@ class ByLevel(ChargeAssignment[P]):
             yield from self._hand_over(shares, self.parameters.hand_over_share)
 
     def enough_share(self) -> float:
-        """Level (share of capacity) from which a robot has enough energy for any task."""
+        """Return the level (share of capacity) that is enough energy for any task."""
         batteries = self.view.batteries
         return 0.0 if batteries is None else batteries.enough_share
 

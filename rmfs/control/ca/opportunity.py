@@ -22,13 +22,14 @@ class OpportunityParameters(LevelParameters):
     """Parameters of CA opportunity."""
 
     below_share: Share = 0.25
-    """A robot below this level charges even if there is work."""
+    """Below this share of the capacity, a robot charges even if there is work."""
     until_share: Level = 0.8
-    """Level at which a robot leaves at the latest."""
+    """Level (share of capacity) at which a charging robot leaves its place at the latest."""
     idle_below_share: Share = 0.75
-    """A robot at rest charges if its level is below this and a place is free."""
+    """If a place is free, a robot at rest charges below this share of the capacity."""
     leave_above_share: Share = 0.4
-    """A robot above this level leaves its place as soon as work waits and no robot is at rest."""
+    """While work waits and no robot is at rest, charging robots are called back, one at a time, if
+    their level is above this share of the capacity and suffices for any task."""
     period_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 30.0
     """Seconds between checks of robots at rest."""
 
@@ -46,7 +47,7 @@ class Opportunity(ByLevel[OpportunityParameters]):
     )
 
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield robots to be sent to charge, and at most one to be called back to work."""
+        """Yield decisions that send robots to charge, and at most one that calls a robot back."""
         yield from super().decide()
         batteries, view = self.view.batteries, self.view
         work_waits = any(station.has_open_work for station in view.stations)
@@ -66,9 +67,10 @@ class Opportunity(ByLevel[OpportunityParameters]):
         return inf if self.view.batteries is None else (now_s // period_s + 1) * period_s
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level if the robot is below the level that applies to it, else 0.
+        """Return `until_share` if the robot's level is below its threshold, else 0.
 
-        For a robot at rest while a place is free, the level is `idle_below_share`.
+        The threshold is `idle_below_share` for a robot at rest while a place is free, and
+        `below_share` otherwise.
         """
         given, view = self.parameters, self.view
         free = any(not station.tasks for station in view.recovery_stations)
@@ -76,5 +78,5 @@ class Opportunity(ByLevel[OpportunityParameters]):
         return given.until_share if share < low else 0.0
 
     def target_share(self) -> float:
-        """The upper level, `until_share`."""
+        """Return the level up to which robots charge, `until_share`."""
         return self.parameters.until_share

@@ -19,12 +19,12 @@ PlaceRule = Literal["least-queued", "nearest", "soonest"]
 
 
 def has_room(view: View, station: RecoveryStation) -> bool:
-    """Whether the queue of a station has a place for another robot."""
+    """Return whether the queue of a station has a place for another robot."""
     return len(station.tasks) < len(view.layout.stations[station.index].queue)
 
 
 def busy_s(view: View, station: RecoveryStation) -> float:
-    """Charging or swap time of all robots at a station or on their way there, in total, in s."""
+    """Return the total charging or swap time, in s, of all robots at a station or bound for it."""
     kind, batteries = view.layout.stations[station.index].kind, view.batteries
     if not isinstance(kind, Charger) or batteries is None:
         return len(station.tasks) * float(getattr(kind.parameters, "swap_s", 0.0))
@@ -44,16 +44,20 @@ def choose(
     full_too: bool = False,
     among: Sequence[RecoveryStation] | None = None,
 ) -> int:
-    """Choose a station for a robot; -1 if none has room or the chosen one cannot be reached.
+    """Choose an energy station for a robot, by its number.
+
+    The number is -1 if no station has room, or the chosen station cannot be reached.
 
     Parameters
     ----------
     rule
-        `least-queued`: fewest robots there and on their way, then the nearest. `nearest`: shortest
-        unhindered time, then the fewest robots. `soonest`: least charging or swap time of all
-        robots there and on their way, then the nearest.
+        `least-queued`: the station with the fewest robots there or on their way, then the nearest.
+        `nearest`: the station with the shortest unhindered travel time, then with the fewest
+        robots. `soonest`: the station with the least total charging or swap time of the robots
+        there or on their way, then the nearest.
     full_too
-        Whether stations with a full queue are considered; the robot may have to wait outside.
+        Whether stations with a full queue are considered; the robot may have to wait outside the
+        queue.
     among
         The stations to choose from. Default: all.
     """

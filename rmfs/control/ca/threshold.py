@@ -1,4 +1,4 @@
-"""CA threshold and to-full: a robot charges when its level is low."""
+"""CA rules `threshold` and `to-full`: a robot charges when its level is low."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ if TYPE_CHECKING:
 
 
 class Threshold(ByLevel[LevelParameters]):
-    """Sends a robot to charge below one level and lets it stay up to another.
+    """Sends a robot to charge when its level is below one threshold, and releases it at another.
 
-    The levels are called `threshold_soc` and `recharge_soc` in Open-RMF, and replenish and release
-    points in DELMIA.
+    The thresholds are called `threshold_soc` and `recharge_soc` in Open-RMF, and replenish and
+    release points in DELMIA.
     """
 
     parameters_model = LevelParameters
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The upper level if the robot is below the lower one, else 0."""
+        """Return `until_share` if the robot's level is below `below_share`, else 0."""
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 
     def target_share(self) -> float:
-        """The upper level, `until_share`."""
+        """Return the level up to which robots charge, `until_share`."""
         return self.parameters.until_share
 
 
@@ -33,19 +33,19 @@ class ToFullParameters(PlaceParameters):
     """Parameters of CA to-full."""
 
     below_share: Share = 0.3
-    """A robot charges when its level falls below this."""
+    """A robot charges when its level falls below this share of the capacity."""
 
 
 class ToFull(ByLevel[ToFullParameters]):
-    """Sends a robot to charge below a level and lets it stay until it is full."""
+    """Sends a robot to charge when its level is below a threshold, until its battery is full."""
 
     parameters_model = ToFullParameters
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """The level that counts as full if the robot is below the threshold, else 0."""
+        """Return `target_share()` if the robot's level is below `below_share`, else 0."""
         return self.target_share() if share < self.parameters.below_share else 0.0
 
     def target_share(self) -> float:
-        """The level that counts as full."""
+        """Return the level (share of capacity) that counts as full."""
         batteries = self.view.batteries
         return 1.0 if batteries is None else batteries.given.full_share

@@ -20,9 +20,8 @@ P = TypeVar("P", bound=Parameters)
 class MethodManagement(Controller[P]):
     """Decides which controllers are replaced by which others, and when.
 
-    It is asked before all other controllers. Commitments of a controller (bundles promised to pods,
-    robots with tasks) are part of the world, so that a successor continues where its predecessor
-    stopped.
+    It decides before all other controllers. The commitments of a controller (bundles promised to
+    pods, tasks of robots) are part of the world, so its successor takes them over.
     """
 
     problem = Problem.MM
@@ -34,9 +33,9 @@ class MethodManagement(Controller[P]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check, when a file is read, that rules can be combined after exchanges.
+        """Check, when a controllers file is read, that the rules fit together after exchanges.
 
-        By default nothing is checked.
+        The base class checks nothing.
 
         Parameters
         ----------

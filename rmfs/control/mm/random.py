@@ -34,14 +34,14 @@ class RandomParameters(Parameters):
         Rules(psa={"name": "station-based"}),
         Rules(psa={"name": "turnover"}),
     )
-    """The alternatives: each is a set of tables, one per new rule, such as `{ psa = { name =
-    "random" } }`, installed together."""
+    """The alternatives. Each is a set of tables, one for each rule to install, for example
+    `{ psa = { name = "random" } }`; the rules of a set are installed together."""
 
 
 class RandomExchange(MethodManagement[RandomParameters]):
-    """After each period, installs an alternative drawn from a list, all equally likely.
+    """Installs, after each period, an alternative drawn from a list, all with equal probability.
 
-    The alternative drawn may already be installed; its rules then start anew.
+    If the drawn alternative is already installed, its rules start anew.
     """
 
     parameters_model = RandomParameters
@@ -70,7 +70,8 @@ class RandomExchange(MethodManagement[RandomParameters]):
         Raises
         ------
         InputError
-            If it cannot, or if a rule of it is a dummy or decides further problems.
+            If an alternative cannot be combined with them, or contains a rule that is a dummy or
+            decides further problems.
         """
         given = choices[Problem.MM].parameters
         assert isinstance(given, RandomParameters)

@@ -12,7 +12,7 @@ from rmfs.control.problems import Problem
 
 
 class Rules(RuleTables):
-    """Rules for some problems; each is a table as in a controllers file, or a plain name."""
+    """Rules for some problems, each given as a table of a controllers file or by its name alone."""
 
     @pydantic.field_validator(*(problem.value for problem in Problem), mode="before")
     @classmethod

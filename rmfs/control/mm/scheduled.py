@@ -28,9 +28,9 @@ class PlannedExchange(Rules):
     """Rules to be installed together at one time."""
 
     at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] | None = None
-    """Simulated time of the exchange in seconds; either this or `at_share`."""
+    """Simulated time of the exchange in seconds; give either this or `at_share`."""
     at_share: Annotated[float, pydantic.Field(ge=0, le=1)] | None = None
-    """Time of the exchange as a share of warm-up and duration together."""
+    """Time of the exchange as a share of the run, warm-up included; give either this or `at_s`."""
 
     @pydantic.model_validator(mode="after")
     def _one_time(self) -> PlannedExchange:
@@ -50,14 +50,16 @@ class ScheduledParameters(Parameters):
     """Parameters of MM scheduled."""
 
     exchanges: Annotated[tuple[PlannedExchange, ...], pydantic.Field(min_length=1)]
-    """The exchanges in order of time, each with `at_s` (s) or `at_share` (of warm-up and duration)
-    and a table for each new rule, for example `{ at_share = 0.5, psa = { name = "nearest" } }`."""
+    """The exchanges in order of time: each has `at_s` (s) or `at_share` (of warm-up and duration
+    together) and a table for each rule to install, for example
+    `{ at_share = 0.5, psa = { name = "nearest" } }`."""
 
 
 class Scheduled(MethodManagement[ScheduledParameters]):
     """Exchanges controllers of any problem at given times.
 
-    Rules of one entry are installed together; parameters that are not given have their defaults.
+    The rules of one entry are installed together. Parameters that are not given have their
+    defaults.
     """
 
     parameters_model = ScheduledParameters
@@ -82,12 +84,13 @@ class Scheduled(MethodManagement[ScheduledParameters]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check that entries are in order, and that rules can be combined after every exchange.
+        """Check that entries are in order, and that the rules fit together after every exchange.
 
         Raises
         ------
         InputError
-            If not, or if some entries have `at_s` and others `at_share`.
+            If one of these conditions is violated, or some entries have `at_s` and others
+            `at_share`.
         """
         given = choices[Problem.MM].parameters
         assert isinstance(given, ScheduledParameters)

@@ -22,8 +22,8 @@ class PickOrderAssignment(Controller[P]):
 
     Each decision is applied immediately: when the controller is resumed, an assigned order has left
     the backlog and occupies its slot. Orders that are not chosen wait until the next call. A
-    controller may also queue orders at a station, so that pods are fetched for them before a slot
-    is free.
+    controller may also queue orders at a station (`QueueOrder`), so that pods are fetched for them
+    before a slot is free.
     """
 
     problem = Problem.POA

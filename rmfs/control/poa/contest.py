@@ -1,4 +1,4 @@
-"""Orders that compete for one station, as seen by the criteria of POA queue."""
+"""The orders that compete for one station; the criteria of POA queue rate them."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class Contest:
     rows
         Rows of the orders in the backlog, shape (N,).
     for_pool
-        Whether they compete for a place in the pool; otherwise they compete for a slot.
+        Whether the orders compete for a place in the pool; otherwise they compete for a slot.
     sku, units
-        SKU of each line, and its units not yet bound to a pod, shape (N, L).
+        SKU of each order line, and its units not yet bound to a pod, shape (N, L).
     """
 
     def __init__(
@@ -53,11 +53,11 @@ class Contest:
         return cls(view, station, rows, for_pool, orders.sku[rows], orders.units[rows])
 
     def at(self, station: PickStation) -> Contest:
-        """Return a contest of the same orders for another station."""
+        """Return a contest of the same orders, for another station."""
         return Contest(self.view, station, self.rows, self.for_pool, self.sku, self.units)
 
     def narrowed(self, to: NDArray[np.bool_]) -> Contest:
-        """Return a contest of the orders for which `to`, of shape (N,), is true."""
+        """Return a contest of those orders for which `to`, of shape (N,), is true."""
         sku, units = self.sku[to], self.units[to]
         return Contest(self.view, self.station, self.rows[to], self.for_pool, sku, units)
 
@@ -65,14 +65,15 @@ class Contest:
         return len(self.rows)
 
     def orders(self) -> list[Order]:
-        """Return the orders as objects."""
+        """Return the N orders as objects."""
         at_row = self.view.orders.at_row
         return [at_row[row] for row in self.rows.tolist()]
 
     def claimed(self) -> NDArray[np.int32]:
-        """Open units of the orders at the station that come before those of the contest, (K,).
+        """Return the units per SKU that orders ahead of the contest need, shape (K,).
 
-        These are the orders with a slot and, if the contest is for the pool, those in the pool.
+        These orders have a slot at the station or, if the contest is for the pool, are in the pool
+        already. Only units that are not yet bound to a pod count.
         """
         claimed: NDArray[np.int32] = self.view.need[self.station.index]
         if self.for_pool:
@@ -80,9 +81,10 @@ class Contest:
         return claimed
 
     def company(self) -> NDArray[np.bool_]:
-        """Whether an order with a slot has a line for each SKU, picked or not, shape (K,).
+        """Return, for each SKU, whether an order with a slot has a line for it, shape (K,).
 
-        If the contest is for the pool, the orders in the pool count instead.
+        Lines count whether picked or not. If the contest is for the pool, the orders in the pool
+        count instead of those with a slot.
         """
         wanted = np.zeros(len(self.view.skus), np.bool_)
         if self.for_pool:
@@ -94,8 +96,8 @@ class Contest:
     def inbound(self) -> tuple[list[int], NDArray[np.float64]]:
         """Return the pods at the station or on their way there, nearest first, and their distances.
 
-        The distance in m is the length of the shortest path of a loaded robot from the pod's
-        current position to the station.
+        The distance in m is the length of a loaded robot's shortest path from the pod's current
+        position to the station.
         """
         pods = list(self.station.tasks)
         far = self.view.travel.distances_to(self.station.waypoint, "path")
@@ -104,10 +106,10 @@ class Contest:
         return [pods[place] for place in nearest_first.tolist()], metres[nearest_first]
 
     def completed_by(self, pod: int) -> NDArray[np.bool_]:
-        """Whether a pod at the station or on its way there completes each order, shape (N,).
+        """Return which orders a pod at the station, or on its way there, completes, shape (N,).
 
-        The pod must have all open units of the order beyond those that orders with a slot need, and
-        no other pod may be bound to the order.
+        The pod must have all units that the order still needs, in addition to those that orders
+        with a slot need; and no units of another pod may be bound to the order.
         """
         spare = self.view.inventory.available[:, pod][self.sku]
         spare = spare - self.view.need[self.station.index][self.sku]
@@ -120,9 +122,10 @@ class Contest:
         return completes
 
     def completed_by_all(self) -> NDArray[np.bool_]:
-        """Whether all pods at the station or on their way together complete each order, (N,).
+        """Return which orders all pods at the station or on their way complete together, (N,).
 
-        They must have all open units of the order beyond those that `claimed` counts.
+        The pods must have all units that the order still needs, in addition to those that `claimed`
+        counts.
         """
         spare = self.view.inventory.inbound[self.station.index][self.sku]
         spare = spare - self.claimed()[self.sku]

@@ -1,4 +1,4 @@
-"""Criteria of POA queue; a file selects and configures some. The highest score wins."""
+"""Criteria of POA queue, selected and configured in a controllers file; the highest score wins."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Criterion(Protocol):
     """Rates the orders of a contest; the highest score wins."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Scores of all orders, shape (N,)."""
+        """Return the scores of the orders, shape (N,)."""
         ...
 
 
@@ -31,7 +31,7 @@ class Random(Parameters):
     criterion: Literal["random"] = "random"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Uniform in [0, 1)."""
+        """Return scores drawn uniformly from [0, 1)."""
         return rng.random(len(contest))
 
 
@@ -41,7 +41,7 @@ class FirstCome(Parameters):
     criterion: Literal["first-come"] = "first-come"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Minus the ordinal of arrival."""
+        """Return minus the ordinal of arrival."""
         return -contest.view.orders.index[contest.rows]
 
 
@@ -51,7 +51,7 @@ class DueTime(Parameters):
     criterion: Literal["due-time"] = "due-time"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Minus the due time in s."""
+        """Return minus the due time in s."""
         return -contest.view.orders.due_s[contest.rows]
 
 
@@ -63,30 +63,30 @@ class DueSoon(Parameters):
     """An order counts as due soon if it is due within this many seconds, or already late."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """1 for orders due soon, else 0."""
+        """Return 1 for orders that are due soon, else 0."""
         view = contest.view
         return view.orders.due_s[contest.rows] <= view.now_s + self.within_s
 
 
 class Weight(Parameters):
-    """Prefers orders of the class whose lateness has the highest weight."""
+    """Prefers orders of the class with the highest weight of lateness."""
 
     criterion: Literal["weight"] = "weight"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Weight of the class."""
+        """Return the weight of the order's class."""
         return contest.view.orders.weight[contest.rows]
 
 
 class FirstWave(Parameters):
-    """Prefers orders of the first wave: late ones, and those due together with the next one due."""
+    """Prefers orders of the first wave: late orders, and orders due together with the next one."""
 
     criterion: Literal["wave"] = "wave"
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Orders due within this many seconds of the earliest one belong to its wave."""
+    """Orders due within this many seconds after the next due order belong to its wave."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """1 for orders of the first wave, else 0."""
+        """Return 1 for orders of the first wave, else 0."""
         view = contest.view
         due_s = view.orders.due_s
         coming = due_s[due_s >= view.now_s]
@@ -99,10 +99,10 @@ class Size(Parameters):
 
     criterion: Literal["size"] = "size"
     count: Literal["units", "lines"] = "units"
-    """Whether size is counted in units or in lines."""
+    """Whether size is counted in unpicked units or in order lines."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Number of units, or of lines."""
+        """Return the number of unpicked units, or of lines."""
         if self.count == "lines":
             sizes = [len(order.lines) for order in contest.orders()]
         else:
@@ -115,11 +115,11 @@ class Completable(Parameters):
 
     criterion: Literal["completable"] = "completable"
     by: Literal["nearest-pod", "all-pods"] = "nearest-pod"
-    """Which pods: the nearest alone, if no other pod is bound to the order, or all pods
-    together."""
+    """Which pods are to complete an order: the nearest pod alone, with no other pod bound to the
+    order (`nearest-pod`), or all pods together (`all-pods`)."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """1 for completable orders, else 0."""
+        """Return 1 for orders that the pod or pods complete, else 0."""
         if self.by == "all-pods":
             return contest.completed_by_all()
         pods, _ = contest.inbound()
@@ -129,18 +129,18 @@ class Completable(Parameters):
 class InboundMatches(Parameters):
     """Prefers orders with the most SKUs on pods on their way to the station; near pods count more.
 
-    An order takes its units from the nearest pods that can spare them. Each pair of a pod and a SKU
-    taken from it scores one point. If the units taken times the pod's distance in m are at most
-    `near_unit_metres`, the pair instead scores as many points as there are pods, minus one for each
-    pod that is nearer.
+    An order is assumed to take its units from the nearest pods that can spare them. It scores one
+    point for each pair of a pod and a SKU taken from this pod. If the number of units taken times
+    the distance of the pod in m is at most `near_unit_metres`, the pair scores more than one point:
+    the number of pods, minus the number of nearer pods.
     """
 
     criterion: Literal["inbound-matches"] = "inbound-matches"
     near_unit_metres: Annotated[float, pydantic.Field(ge=0)] = 10.0
-    """Product of units and metres up to which a pod counts as near."""
+    """A pod counts as near if the units taken from it times its distance in m are at most this."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Sum of the points of each order."""
+        """Return the sum of the points of each order."""
         pods, metres = contest.inbound()
         if not pods:
             return np.zeros(len(contest), np.int64)
@@ -165,15 +165,15 @@ class InboundMatches(Parameters):
 
 
 class Related(Parameters):
-    """Prefers orders with the largest share of lines in common with the orders they would join."""
+    """Prefers orders with the largest share of lines whose SKU the orders to be joined contain."""
 
     criterion: Literal["related"] = "related"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Share of the lines with open units whose SKU is also in a line of another order.
+        """Return the share of an order's lines with a SKU that another order contains, too.
 
-        The other orders are those in the pool or those with a slot, whichever the order competes
-        for.
+        Only lines with units not yet bound to a pod count. The other orders are those in the pool
+        if the contest is for the pool, and otherwise those with a slot.
         """
         is_line = contest.units > 0
         shared = contest.company()[contest.sku] & is_line
@@ -208,19 +208,20 @@ def best(
     rng: np.random.Generator,
     first: list[Scores] | None = None,
 ) -> tuple[Contest, int] | None:
-    """Find the order that wins by the first criterion, then by the second, and so on.
+    """Find the best order by the first criterion; each further criterion breaks remaining ties.
 
-    Full ties go to the order that arrived first, then to the first contest.
+    Ties that all criteria leave go to the order that arrived first, then to the first contest.
 
     Parameters
     ----------
     first
-        By contest, the scores of all its orders by the first criterion, if already known.
+        For each contest, the scores of its orders by the first criterion, if already known.
 
     Returns
     -------
     tuple or None
-        Contest of the winner and its row in the backlog; None if there are no orders.
+        Contest of the winning order, and the order's row in the backlog; None if there are no
+        orders.
     """
     left = [contest for contest in contests if len(contest)]
     for number, criterion in enumerate(criteria):

@@ -45,8 +45,8 @@ class _Visit:
 class FastLane:
     """Assigns orders of the backlog to stations whose current pod can complete them.
 
-    Stations are considered by number, the orders that fit by rank. Units of the pod that orders at
-    its station already need are not counted.
+    Stations are considered in order of their numbers, and orders in order of `rank`. Units of the
+    pod that orders already at the station need are not available to others.
 
     Parameters
     ----------

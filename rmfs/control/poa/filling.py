@@ -1,4 +1,4 @@
-"""Filling free slots order by order: shared by most POA rules."""
+"""Base class of most POA rules, which fill free slots order by order."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ class FastLaneParameters(Parameters):
     """Parameters of POA rules with a fast lane."""
 
     fast_lane: bool = False
-    """Whether one slot of each station is reserved for orders that the pod being served there can
-    complete."""
+    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
+    first. Stations with several slots reserve one for the fast lane."""
     fast_lane_tie_breaker: TieBreaker = "due-time"
-    """Tie-breaker among such orders: earliest due time, earliest arrival, or random."""
+    """Tie-breaker among orders for the fast lane: earliest due time, first arrival, or random."""
 
 
 P = TypeVar("P", bound=Parameters)
@@ -39,9 +39,9 @@ P = TypeVar("P", bound=Parameters)
 class Filling(PickOrderAssignment[P]):
     """Assigns orders to free slots, one after another.
 
-    The fast lane, for rules that have one, comes first. At stations with more than one slot, one is
-    reserved for it. Stock can serve an order if all its units are available on pods and not needed
-    by an order at a station.
+    If the rule has a fast lane, orders for it come first, and one slot is reserved for it at each
+    station with more than one slot. Stock can serve an order if pods have all its units available
+    in addition to those that orders at stations need.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -59,16 +59,16 @@ class Filling(PickOrderAssignment[P]):
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
         """Choose an order of the backlog that stock can serve, and one of the given stations.
 
-        None if no order should be assigned now.
+        Return None if no order should be assigned now.
 
         Parameters
         ----------
         stations
-            Stations with a slot to fill, ascending; at least one.
+            Stations with a slot to fill, at least one, in order of their numbers.
         """
 
     def decide(self) -> Iterator[AssignOrder]:
-        """Yield orders for the fast lane, then orders for the other slots."""
+        """Yield assignments of orders to the fast lane, then to the other slots."""
         if self._lane is not None:
             yield from self._lane.decide()
         while len(self.view.orders):

@@ -1,4 +1,4 @@
-"""POA foresight: the best pair of station and order by a primary and a secondary score."""
+"""POA foresight: assigns the best pair of station and order by two scores."""
 
 from __future__ import annotations
 
@@ -25,20 +25,21 @@ class ForesightParameters(Parameters):
     """Parameters of POA foresight."""
 
     score: Score = "matches"
-    """Primary score: units that spare stock on inbound pods can serve (`matches`); the same plus
-    one for each line for which an inbound pod has exactly the units needed (`depletion`) or at
-    least these (`surplus`); or earliness of the due time (`due-time`)."""
+    """Primary score. `matches`: units of the order that spare stock on inbound pods can serve.
+    `depletion`: the same, plus 1 for each line of which an inbound pod has exactly the number of
+    units needed. `surplus`: `matches`, plus 1 for each line of which an inbound pod has at least
+    that number. `due-time`: the earlier the due time, the higher."""
     tie_breaker: Score = "due-time"
-    """Secondary score, used in a tie."""
+    """Secondary score, which breaks ties of the primary score."""
 
 
 class Foresight(Filling[ForesightParameters]):
-    """Assigns the pair of station and order with the highest score, then the next.
+    """Assigns the pair of a station and an order with the highest score, then the next such pair.
 
-    Ties are broken by the second score, then by the station with the most free slots, the station
-    with the lowest number, and the order that arrived first. In the scores, each available unit is
-    counted for one order only; the two bonuses consider each pod separately, regardless of other
-    demand for its units.
+    Ties are broken by the secondary score, then in favour of the station with the most free slots,
+    the station with the lowest number, and the order that arrived first. Stock is spare if orders
+    already at the station do not need it. The additional points of `depletion` and `surplus` are
+    given for each pod separately, whether or not other orders need its units.
     """
 
     parameters_model = ForesightParameters

@@ -1,4 +1,4 @@
-"""POA linear: the pair of order and station with the greatest weighted sum of features."""
+"""POA linear: assigns the pair of order and station with the greatest weighted sum of features."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class LinearParameters(FastLaneParameters):
     """Parameters of POA linear."""
 
     fast_lane: bool = True
-    """Whether one slot of each station is reserved for orders that the pod being served there can
-    complete."""
+    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
+    first. Stations with several slots reserve one for the fast lane."""
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("poa"))
     """Weights of the scaled features of a pair of order and station (see the page on learning)."""
 
@@ -34,10 +34,10 @@ class LinearParameters(FastLaneParameters):
 
 
 class Linear(Filling[LinearParameters]):
-    """Fills free slots, each time with the best pair of a station and an order in stock.
+    """Fills free slots, each time by the best pair of a station and an order that stock can serve.
 
-    The fast lane, unless switched off, comes first. Full ties go to the order that arrived first,
-    then to the station with the lowest number.
+    Orders for the fast lane, unless this is switched off, come first. Ties go to the order that
+    arrived first, then to the station with the lowest number.
     """
 
     parameters_model = LinearParameters

@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 
 class LinesInCommon(BestPair[PairParameters]):
-    """Groups orders for the same SKUs, by the best pair of order and station.
+    """Groups orders for the same SKUs at a station, by the best pair of order and station.
 
     The score of a pair is the sum, over the lines of the order, of the number of orders at the
-    station with a line for the same SKU, picked or not. The pair with the highest score is assigned
-    until no slot is free. Ties are broken by the tie-breaker, then by arrival, then by station
-    number.
+    station with a line for the same SKU, whether picked or not. The pair with the highest score is
+    assigned, then the next, until no slot is free. Ties are broken by the tie-breaker, then by
+    arrival, then by station number.
     """
 
     parameters_model = PairParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Score of each order at each station, as described above, shape (S, B)."""
+        """Return the score of each pair of a station and an order of the backlog, shape (S, B)."""
         orders = self.view.orders
         lines = self.view.lines[[station.index for station in stations]]
         common: NDArray[np.int32] = (lines[:, orders.sku] * (orders.units > 0)).sum(

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 def line_matches(view: View, station: int) -> NDArray[np.int32]:
     """Return the units of each order line that spare stock on inbound pods can serve, (B, L).
 
-    Spare stock is what is available on these pods beyond the open requests of the station.
+    Inbound pods are at the station or on their way there. Their spare stock is what they have
+    available in addition to the units that orders at the station still need from pods.
     """
     orders = view.orders
     by_sku: NDArray[np.int32] = view.inventory.inbound[station] - view.need[station]
@@ -29,6 +30,6 @@ def line_matches(view: View, station: int) -> NDArray[np.int32]:
 def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
     """Return the units of each order that spare stock can serve at each station, shape (S, B).
 
-    `line_matches` explains spare stock.
+    `line_matches` explains which stock is spare.
     """
     return np.stack([np.einsum("bl->b", line_matches(view, station.index)) for station in stations])

@@ -1,4 +1,4 @@
-"""POA near-best-pod: orders by arrival, each to the station nearest to its best pod."""
+"""POA near-best-pod: sends each order, by arrival, to the station nearest to its best pod."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ class NearBestPodParameters(Parameters):
 
     metric: Metric = "path"
     """Distance from pod to station: Euclidean, Manhattan, length of the shortest path of a loaded
-    robot, or its travel time."""
+    robot, or the robot's unhindered travel time."""
 
 
 class NearBestPod(Filling[NearBestPodParameters]):
     """Sends an order to the station nearest to the pod that serves it best.
 
-    Orders are taken by arrival; those that stock cannot serve are skipped. The best pods are the
-    stored pods with the most units available for the order; the station nearest to any of them is
-    chosen. Ties go to the station with the lowest number. If no stored pod has a unit of the order,
-    the station with the fewest open orders is chosen.
+    Orders are taken by arrival; those that stock cannot serve are skipped. The best pods of an
+    order are the stored pods that can serve the most of its units; the station nearest to any of
+    them is chosen. Ties go to the station with the lowest number. If no stored pod has a unit of
+    the order, the station with the fewest open orders is chosen.
     """
 
     parameters_model = NearBestPodParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that came first, and a station by distance."""
+        """Choose the order that arrived first, and a station by distance."""
         order = self.oldest_order()
         if order is None:
             return None

@@ -21,22 +21,22 @@ if TYPE_CHECKING:
     from rmfs.world.stations import PickStation
 
 _DRAWS = 8
-"""Number of random draws from the backlog before the orders that can be served are listed."""
+"""Number of draws from the whole backlog, before a draw from the orders that can be served."""
 
 
 class OrderRuleParameters(FastLaneParameters):
     """Parameters of POA rules that choose the order first."""
 
     station: Literal["random", "least-busy", "most-busy"] = "random"
-    """Choice among stations with a free slot: random, or the lowest or highest share of occupied
-    slots, ties by number."""
+    """Choice among stations with a free slot: random, or the station with the lowest (`least-busy`)
+    or highest (`most-busy`) share of occupied slots; ties go to the lowest number."""
     stick_to_station: bool = False
-    """Whether the last station is chosen again while it has a free slot other than the one reserved
-    for the fast lane."""
+    """Whether the last station is chosen again as long as it has a free slot other than the one
+    reserved for the fast lane."""
 
 
 class OrderRule(Filling[OrderRuleParameters]):
-    """Chooses an order, then a station for it."""
+    """Base class of rules that choose an order, then a station for it."""
 
     parameters_model = OrderRuleParameters
 
@@ -51,7 +51,7 @@ class OrderRule(Filling[OrderRuleParameters]):
         """Choose an order that stock can serve; None if there is none."""
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order by the rule, the station by the parameters."""
+        """Choose the order by the rule, and the station by the parameters."""
         order = self.choose_order()
         if order is None:
             return None
@@ -68,13 +68,13 @@ class OrderRule(Filling[OrderRuleParameters]):
 
 
 class RandomOrder(OrderRule):
-    """Fills free slots with random orders.
+    """Fills free slots with orders drawn at random.
 
     Source: rule "Default" of RAWSim-O with random order.
     """
 
     def choose_order(self) -> Order | None:
-        """Draw an order."""
+        """Draw one of the orders that stock can serve; None if there is none."""
         backlog = self.view.orders.at_row
         free_stock = self.view.inventory.free_stock.item
         for _ in range(_DRAWS):
@@ -86,25 +86,25 @@ class RandomOrder(OrderRule):
 
 
 class FirstCome(OrderRule):
-    """Fills free slots with orders by arrival.
+    """Fills free slots with orders in the sequence of their arrival.
 
     Orders that stock cannot serve are skipped. Source: rules "Default" with first come, first
-    served, and "Random" of RAWSim-O.
+    served, and "Random", of RAWSim-O.
     """
 
     def choose_order(self) -> Order | None:
-        """Choose the order that arrived first."""
+        """Choose the order that arrived first; None if stock can serve none."""
         return self.oldest_order()
 
 
 class DueTime(OrderRule):
-    """Fills free slots with orders by due time.
+    """Fills free slots with orders in the sequence of their due times.
 
     Ties go to the order that arrived first. Source: rule "Default" of RAWSim-O with due time.
     """
 
     def choose_order(self) -> Order | None:
-        """Choose the order that is due first."""
+        """Choose the order that is due first; None if stock can serve none."""
         rows = self.servable_rows()
         if not len(rows):
             return None
@@ -113,10 +113,10 @@ class DueTime(OrderRule):
 
 
 class WorkParameters(OrderRuleParameters):
-    """Parameters of POA rules that compare the time left with the work to be done."""
+    """Parameters of POA rules that compare an order's time left until it is due with its work."""
 
     line_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
-    """Work per order line in seconds: the time until its pod arrives."""
+    """Work per order line in seconds, as an estimate of the time until its pod arrives."""
     unit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 10.0
     """Work per unit in seconds."""
 
@@ -153,8 +153,9 @@ class _ByWork(OrderRule):
 class Slack(_ByWork):
     """Fills free slots with the orders that have the least slack.
 
-    Slack is the time until an order is due minus its work (`line_s`, `unit_s`). Ties go to the
-    order that arrived first. Source: the least-slack rule of job shops (Panwalkar, Iskander 1977).
+    Slack is the time until an order is due minus its work, which is `line_s` per order line plus
+    `unit_s` per unit. Ties go to the order that arrived first. Source: the least-slack rule of job
+    shops (Panwalkar, Iskander 1977).
     """
 
     def _scores(
@@ -169,9 +170,10 @@ class Slack(_ByWork):
 class CriticalRatio(_ByWork):
     """Fills free slots with the orders that have the least time left relative to their work.
 
-    The ratio is the time until an order is due, divided by its work (`line_s`, `unit_s`); an order
-    below 1 will be late. Slack per remaining work, which is this ratio minus 1, gives the same
-    sequence. Ties go to the order that arrived first. Source: Panwalkar, Iskander (1977).
+    The ratio is the time until an order is due, divided by its work, which is `line_s` per order
+    line plus `unit_s` per unit. If it is below 1, the order is expected to be late. Slack divided
+    by work, which is this ratio minus 1, gives the same sequence. Ties go to the order that arrived
+    first. Source: Panwalkar, Iskander (1977).
     """
 
     def _scores(
@@ -187,17 +189,18 @@ class TardinessCostParameters(WorkParameters):
     """Parameters of POA tardiness-cost."""
 
     ahead: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 2.0
-    """Look-ahead of the rule: the slack over which urgency falls by the factor e, in multiples of
-    the mean work of the waiting orders."""
+    """Look-ahead of the rule: the slack that reduces the urgency of an order by the factor e, in
+    multiples of the mean work of the orders that can be served."""
 
 
 class TardinessCost(_ByWork):
     """Fills free slots with the orders whose lateness would be most costly relative to their work.
 
-    The index of an order is w / p x exp(-s / (`ahead` x m)): w is the weight of its class, p its
-    work (`line_s`, `unit_s`), s its slack, at least 0, and m the mean work of the orders that can
-    be served. Ties go to the order that arrived first. Source: apparent tardiness cost
-    (Vepsalainen, Morton 1987), with their `ahead` of 2.
+    The order with the highest index w / p x exp(-s / (`ahead` x m)) comes first. Here, w is the
+    weight of the order's class, p its work (`line_s` per order line plus `unit_s` per unit), s its
+    slack (time until it is due minus p, at least 0), and m the mean work of the orders that can be
+    served. Ties go to the order that arrived first. Source: apparent tardiness cost (Vepsalainen,
+    Morton 1987), where `ahead` is 2.
     """
 
     parameters_model = TardinessCostParameters
@@ -220,10 +223,10 @@ class TardinessCost(_ByWork):
 class FrequencyAge(OrderRule):
     """Fills free slots with old orders for frequently ordered SKUs.
 
-    The order with the highest product of age and frequency comes first. Age is 1 for the oldest
-    order of the backlog and decreases by 1/B for each of the B orders. Frequency is the mean over
-    its lines of the units ordered of the SKU, including past orders. Ties go to the order that
-    arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
+    The order with the highest product of age and frequency comes first. The age of the oldest of
+    the B orders in the backlog is 1, and each later order is younger by 1/B. The frequency of an
+    order is the mean, over its lines, of all units ordered of the SKU, including past orders. Ties
+    go to the order that arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
     """
 
     def __init__(
@@ -233,7 +236,7 @@ class FrequencyAge(OrderRule):
         self._frequency = view.trackers.get(Frequency)
 
     def choose_order(self) -> Order | None:
-        """Choose the order with the highest product."""
+        """Choose the order with the highest product; None if stock can serve none."""
         rows = self.servable_rows()
         if not len(rows):
             return None

@@ -1,4 +1,4 @@
-"""Scoring of all pairs of station and order: shared by several POA rules."""
+"""Base class of POA rules that score all pairs of station and order."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ Q = TypeVar("Q", bound=PairParameters)
 
 
 class BestPair(Filling[Q]):
-    """Assigns the pair of station and order with the highest score, then the next.
+    """Assigns the pair of a station and an order with the highest score, then the next such pair.
 
     Ties are broken by the tie-breaker, then by arrival, then by station number.
     """
 
     @abstractmethod
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Return the nonnegative score of each order of the backlog at each station, (S, B)."""
+        """Return the scores (0 or more) of the B orders of the backlog at S stations, (S, B)."""
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
         """Choose the best pair of a servable order and a station."""

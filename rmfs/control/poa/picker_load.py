@@ -1,4 +1,4 @@
-"""POA picker-load: orders by arrival, to the picker who will finish all work first."""
+"""POA picker-load: sends orders, by arrival, to the picker who would finish all work first."""
 
 from __future__ import annotations
 
@@ -19,23 +19,24 @@ class PickerLoadParameters(Parameters):
     """Parameters of POA picker-load."""
 
     fatigue_weight: Annotated[float, pydantic.Field(ge=0, le=100)] = 0.0
-    """Relative increase of a picker's work at full fatigue (1), in proportion to fatigue. With 0,
-    only time counts; with 100, tired pickers get no orders while others have free slots."""
+    """Each picker's time is multiplied by 1 plus this weight times the picker's fatigue (0 to 1). A
+    high weight, such as 100, keeps orders away from tired pickers while others have free slots."""
 
 
 class PickerLoad(Filling[PickerLoadParameters]):
     """Balances work over pickers: slow or tired pickers get fewer units.
 
     Orders are taken by arrival; those that stock cannot serve are skipped. An order goes to the
-    station whose picker currently needs the least time for the units of all open orders there,
-    including this one; speed, learning and fatigue count. Stations without a picker come last. In
-    scenarios without pickers, units take the times of the layout. Ties go to the lowest number.
+    station whose picker, in the present state, needs the least time for the units still to be
+    picked there, including those of this order. The state is the picker's speed, learning and
+    fatigue. Stations without a picker come last. In scenarios without pickers, the time of a unit
+    is that of the layout. Ties go to the station with the lowest number.
     """
 
     parameters_model = PickerLoadParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that arrived first, and a station by the work of its picker."""
+        """Choose the order that arrived first, and a station by the time that its picker needs."""
         order = self.oldest_order()
         if order is None:
             return None

@@ -1,4 +1,4 @@
-"""POA pod-match: the order with the most units on pods on their way to the station."""
+"""POA pod-match: assigns the order with the most units on pods that come to the station anyway."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ class PodMatchParameters(PairParameters):
     """Parameters of POA pod-match."""
 
     late_first: bool = False
-    """Whether orders past their due time come before all others."""
+    """Whether orders that are past their due time come before all others."""
     fast_lane: bool = True
-    """Whether one slot of each station is reserved for orders that the pod being served there can
-    complete."""
+    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
+    first. Stations with several slots reserve one for the fast lane."""
 
 
 class PodMatch(BestPair[PodMatchParameters]):
     """Matches orders with pods that are coming anyway, for a high pile-on.
 
-    The score of a pair of order and station is the number of its units that are available on pods
-    inbound to the station; each available unit counts for one order only. The pair with the highest
-    score is assigned until no slot is free. Ties are broken by the tie-breaker, then by arrival,
-    then by station number.
+    The score of a pair of order and station is the number of the order's units that pods at the
+    station, or on their way there, have available in addition to what orders at the station need.
+    The pair with the highest score is assigned, then the next, until no slot is free. Ties are
+    broken by the tie-breaker, then by arrival, then by station number.
     """
 
     parameters_model = PodMatchParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Units matched, (S, B); with `late_first`, late orders score higher than all others."""
+        """Return the units matched, (S, B); with `late_first`, late orders score highest."""
         scores = matches(self.view, stations)
         if self.parameters.late_first:
             late = self.view.orders.due_s < self.view.now_s

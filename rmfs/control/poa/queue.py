@@ -39,33 +39,36 @@ class QueueParameters(Parameters):
     """Parameters of POA queue."""
 
     queue_length: Annotated[int, pydantic.Field(ge=1)] = 20
-    """Maximum number of orders in the pool of each station. Other stations cannot take them, so all
-    pools together should hold clearly less than the backlog."""
+    """Maximum number of orders in the pool of each station. Orders in a pool are not available to
+    other stations, so all pools together should hold clearly fewer orders than the backlog."""
     queue_criteria: Criteria = (InboundMatches(), Related(), DueTime())
-    """Criteria for choosing which order joins which pool, in order of priority."""
+    """Criteria, in order of priority, for choosing which order joins which pool next."""
     station_criteria: Criteria = (DueSoon(), Completable(), Completable(by="all-pods"))
-    """Criteria for choosing which order of its pool a station takes."""
+    """Criteria, in order of priority, for choosing which order of its pool a station takes next."""
     fast_lane: bool = True
-    """Whether one slot of each station is reserved for orders that the pod being served there can
-    complete."""
+    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
+    first. Stations with several slots reserve one for the fast lane."""
     fast_lane_criteria: Criteria = (Size(), DueTime(), FirstCome())
-    """Criteria for choosing among such orders."""
+    """Criteria, in order of priority, for choosing among orders for the fast lane."""
 
 
 class Queue(PickOrderAssignment[QueueParameters]):
     """Assigns orders in two steps: first to the pool of a station, later to one of its slots.
 
-    1. Pools are filled with orders that stock can serve, pair by pair of station and order. Pods
-    may be fetched for the orders of a pool, and bound to them, before they have a slot (PPS).
-    2. Fast lane: at each station with a free slot and a pod at its head, orders that this pod
-    completes get a slot: orders of the pool or, if there are none, orders in no pool.
-    3. In turn, each station with a free slot besides the one reserved for the fast lane takes an
-    order of its pool that stock can serve, until none can.
+    1. Pools are filled with orders that stock can serve: the best pair of a station and an order,
+    then the next. PPS may choose pods for the orders of a pool, and bind them to these pods, before
+    the orders have a slot.
+    2. Fast lane: at each station with a free slot and a pod at the head of its queue, orders that
+    this pod completes get a slot. These are orders of the station's pool or, if the pod completes
+    none of these, orders in no pool.
+    3. The stations with a free slot besides the one reserved for the fast lane take turns: each
+    takes an order of its pool that stock can serve, until no station can take another.
 
-    These steps are repeated until nothing changes. Only active stations have a pool; each available
-    unit counts for one order only. Full ties go to the order that arrived first, then to the
-    station with the lowest number. The rule is also asked when a pod reaches the head of a queue,
-    so that a pod fetched for the pool finds its orders on slots.
+    These steps are repeated until nothing changes. Only active stations have a pool. Units that
+    other orders of a station need do not count as available for an order. Ties that the criteria
+    leave go to the order that arrived first, then to the station with the lowest number. The rule
+    also decides when a pod reaches the head of a queue, so that the orders for which the pod was
+    fetched can get slots.
     """
 
     parameters_model = QueueParameters
@@ -78,7 +81,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
         ]
 
     def decide(self) -> Iterator[AssignOrder | QueueOrder]:
-        """Empty the pools of inactive stations, then fill pools and slots as described above."""
+        """Empty the pools of inactive stations, then fill pools and slots step by step."""
         for station in self.view.pick_stations:
             if not station.active:
                 for order in list(station.queued.values()):

@@ -1,4 +1,4 @@
-"""POA related: orders by arrival, to the station whose orders need the same SKUs."""
+"""POA related: sends orders, by arrival, to the station whose orders need the same SKUs."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ class RelatedParameters(Parameters):
     """Parameters of POA related."""
 
     tie_breaker: Literal["least-busy", "most-busy", "random"] = "least-busy"
-    """Tie-breaker among stations with equally many SKUs in common: fewest or most open orders, or
-    random."""
+    """Tie-breaker among stations with equally many SKUs in common: fewest (`least-busy`) or most
+    (`most-busy`) open orders, or random."""
 
 
 class Related(Filling[RelatedParameters]):
     """Groups orders for the same SKUs, so that a pod serves several of them.
 
     Orders are taken by arrival; those that stock cannot serve are skipped. An order goes to the
-    station with the highest sum, over the orders there, of the SKUs in common, picked or not. Ties
-    are broken by the tie-breaker, then by station number.
+    station with the highest sum, over the orders there, of the number of SKUs in common, whether
+    picked or not. Ties are broken by the tie-breaker, then by station number.
     """
 
     parameters_model = RelatedParameters

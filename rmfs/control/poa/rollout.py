@@ -1,4 +1,4 @@
-"""POA rollout: the base rule's decision, or one that did better in simulated trials."""
+"""POA rollout: makes the base rule's decision, or one that did better in simulated trials."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
 
     The base rule makes a default decision. This decision and the best other pairs of order and
     station (by `rmfs.control.features.RANKINGS`) are tried in copies of the run, in which the base
-    rule continues. The best one is taken, or the default if the advantage is not certain enough
-    (`certainty`). The pacing determines the simulated time that trials cost; meanwhile no order is
-    assigned.
+    rule decides afterwards. The decision that did best is made, or the default decision if the
+    advantage over it is not certain enough (`certainty`). The pacing determines the simulated time
+    that trials take; meanwhile, no order is assigned.
     """
 
     parameters_model = RolloutParameters
@@ -52,7 +52,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
                 yield first
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best decision if it is still valid; if time has passed, continue deciding."""
+        """Yield the best decision if it is still valid; if time has passed, decide further."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide()

@@ -25,7 +25,7 @@ def first_row(
 ) -> int:
     """Choose one of several rows of the backlog by a tie-breaker.
 
-    Equal due times go to the order that arrived first.
+    If due times are equal, the order that arrived first is chosen.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def first_row(
 def order_rank(
     tie_breaker: TieBreaker, rng: np.random.Generator
 ) -> Callable[[Order], tuple[float, int]]:
-    """Return a function of an order whose value ranks the order; the smallest value wins."""
+    """Return a function that gives the rank of an order; the order with the smallest rank wins."""
     if tie_breaker == "random":
         return partial(_at_random, rng)
     return _by_due_time if tie_breaker == "due-time" else _by_arrival

@@ -1,4 +1,4 @@
-"""POA wave: orders of the earliest departure first, and of those the best match with pods."""
+"""POA wave: assigns the orders due first, among them the one that best matches arriving pods."""
 
 from __future__ import annotations
 
@@ -20,29 +20,30 @@ class WaveParameters(PairParameters):
     """Parameters of POA wave."""
 
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Orders due within this many seconds of the earliest one belong to its wave; 0: only orders
-    due at the same time, as for one truck."""
+    """Orders due within this many seconds after the first one belong to its wave. With 0, these are
+    only the orders due at the same time, as for one truck."""
     missed_last: bool = False
-    """Whether orders past their due time, whose truck has left, come last; otherwise they are the
-    first wave."""
+    """Whether orders past their due time, whose truck has left, come last. Otherwise they belong to
+    the first wave."""
     fast_lane: bool = True
-    """Whether one slot of each station is reserved for orders that the pod being served there can
-    complete."""
+    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
+    first. Stations with several slots reserve one for the fast lane."""
 
 
 class Wave(BestPair[WaveParameters]):
     """Fills free slots wave by wave, and within a wave by pod match.
 
-    A wave consists of the orders that are due together, as for one truck. From the first wave that
-    stock can serve, the rule assigns the pair of order and station with the most units on pods
-    inbound to the station; when the wave has no order left, the next one begins. Ties are broken by
-    the tie-breaker, then by arrival, then by station number.
+    A wave consists of the orders that are due together, as for one truck. From the first wave with
+    an order that stock can serve, the rule assigns the pair of order and station with the most
+    units on pods at the station or on their way there, as POA `pod-match` does. When no order of
+    the wave can be assigned any more, the next wave begins. Ties are broken by the tie-breaker,
+    then by arrival, then by station number.
     """
 
     parameters_model = WaveParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Units matched, shape (S, B); orders of the first wave score higher than all others."""
+        """Return the units matched, (S, B); orders of the first wave score above all others."""
         scores = matches(self.view, stations)
         orders = self.view.orders
         servable = orders.servable(self.view.inventory.free_stock)

@@ -1,4 +1,4 @@
-"""POA workload: orders by arrival, to the station with the fewest or most open orders."""
+"""POA workload: sends orders, by arrival, to the station with the fewest or most open orders."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class WorkloadParameters(Parameters):
     """Parameters of POA workload."""
 
     station: Literal["least-busy", "most-busy"] = "least-busy"
-    """Whether the station with the fewest or with the most open orders is chosen."""
+    """Choice of the station: the fewest (`least-busy`) or the most (`most-busy`) open orders."""
 
 
 class Workload(Filling[WorkloadParameters]):

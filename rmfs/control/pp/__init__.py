@@ -1,4 +1,4 @@
-"""Path planning (PP): names and parameters of the planners, which run inside traffic."""
+"""Path planning (PP): names and parameters of the planners, which run in the traffic core."""
 
 from __future__ import annotations
 
@@ -36,18 +36,19 @@ class PathPlanning(Controller[P]):
 
 
 class RollingParameters(Parameters):
-    """Parameters of planners that are called repeatedly for all robots."""
+    """Parameters of rolling planners, which repeatedly plan all driving robots."""
 
     period_s: float = pydantic.Field(1.0, gt=0)
-    """Minimum simulated time between two calls of the planner."""
+    """Minimum simulated time, in seconds, between two calls of the planner."""
     runs_granted: int = pydantic.Field(4, ge=1)
-    """Maximum number of straight runs of its plan granted to a robot at once."""
+    """Maximum number of straight runs of its plan that a robot is granted at once."""
     patience_s: float = pydantic.Field(30.0, ge=0)
-    """Time for which a robot stands still before it hops to a random neighbouring waypoint."""
+    """Time, in seconds, for which a robot stands still before it moves to a random free waypoint
+    next to it."""
 
 
 class PathPlanningInPython(PathPlanning[P]):
-    """Base class of planners written in Python; they see the traffic but not the warehouse."""
+    """Base class of planners written in Python, which see the traffic but not orders or stock."""
 
     planner = "python"
 

@@ -1,4 +1,4 @@
-"""PP BCP: biased cost pathfinding."""
+"""PP BCP (biased cost pathfinding)."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ class BcpParameters(RollingParameters):
     """Parameters of PP BCP."""
 
     bias_m: float = pydantic.Field(1.0, gt=0)
-    """Cost in metres added to a waypoint for a robot whose path collides there."""
+    """Cost in metres that each conflict adds to its waypoint, for one of the two robots."""
     rounds: int = pydantic.Field(20, ge=1)
-    """Maximum number of planning rounds per call if paths collide."""
+    """Maximum number of planning rounds per call; further rounds are needed if paths conflict."""
 
 
 class Bcp(PathPlanning[BcpParameters]):
-    """BCP: plans quickest paths in space; a collision makes its waypoint costlier for one robot."""
+    """BCP: plans quickest paths regardless of others; a conflict makes its waypoint costlier."""
 
     parameters_model = BcpParameters
     planner = "bcp"

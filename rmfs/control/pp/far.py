@@ -1,4 +1,4 @@
-"""PP FAR: flow annotation replanning, one straight hop at a time."""
+"""PP FAR (flow annotation replanning), which plans one straight run at a time."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ class FarParameters(Parameters):
     """Parameters of PP FAR."""
 
     period_s: float = pydantic.Field(1.0, gt=0)
-    """Minimum simulated time between two calls of the planner."""
+    """Minimum simulated time, in seconds, between two calls of the planner."""
     runs_granted: int = pydantic.Field(1, ge=1)
-    """Maximum number of hops of its path granted to a robot at once."""
+    """Maximum number of straight runs of its path that a robot is granted at once."""
     reroute: bool = True
-    """Whether a robot evades by an alternative path; otherwise it evades to a random neighbouring
-    waypoint."""
+    """Whether a robot that must evade takes another path. Otherwise it moves to a random free
+    waypoint next to it."""
     patience_s: float = pydantic.Field(30.0, ge=0)
-    """Time for which a robot stands still before it evades in any case."""
+    """Time, in seconds, after which a robot that stands still evades, whatever blocks it."""
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """Waiting time of a robot that is blocked or has evaded."""
+    """Time, in seconds, for which a robot waits when it is blocked or has evaded."""
     avoid_evading_back: bool = True
     """Whether a robot evades to the same waypoint at most once before it makes progress."""
 
 
 class Far(PathPlanning[FarParameters]):
-    """FAR: drives the next straight hop of the path as far as it is free; evades if blocked."""
+    """FAR: drives the next straight run of a path as far as it is free, and evades if blocked."""
 
     parameters_model = FarParameters
     planner = "far"

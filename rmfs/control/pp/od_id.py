@@ -1,4 +1,4 @@
-"""PP OD&ID: operator decomposition with independence detection."""
+"""PP OD&ID (operator decomposition with independence detection)."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class OdIdParameters(RollingParameters):
-    """Parameters of PP OD&ID, which limit joint planning."""
+    """Parameters of PP OD&ID, most of which limit the effort of joint planning."""
 
     window_s: float = pydantic.Field(15.0, gt=0)
-    """Horizon within which robots avoid each other."""
+    """Horizon, in seconds, within which robots avoid each other."""
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """Duration of a wait."""
+    """Duration, in seconds, of a single wait."""
     nodes_per_robot: int = pydantic.Field(100, ge=1)
-    """Maximum number of joint states expanded per group, for each robot in it."""
+    """Maximum number of joint states expanded when a group is planned, per robot of the group."""
     nodes: int = pydantic.Field(600, ge=1)
     """Maximum number of joint states expanded per call, over all groups."""
     choices: int = pydantic.Field(4, ge=1)
-    """Number of straight runs considered per robot in joint planning, the most promising ones."""
+    """Maximum number of straight runs considered per robot in joint planning, the best first."""
     labels: int = pydantic.Field(2_000, ge=1)
     """Maximum number of labels in the search for a single robot."""
 

@@ -1,4 +1,4 @@
-"""PP PAS: parallel agent search."""
+"""PP PAS (parallel agent search)."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ class PasParameters(RollingParameters):
     """Parameters of PP PAS."""
 
     window_s: float = pydantic.Field(30.0, gt=0)
-    """Horizon within which robots avoid each other."""
+    """Horizon, in seconds, within which robots avoid each other."""
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """Duration of a wait."""
+    """Duration, in seconds, of a single wait."""
     priorities: int = pydantic.Field(2, ge=0)
-    """Highest priority to which a robot without options can rise; after that it restarts at 0."""
+    """Highest priority to which a robot without options can rise. If it has none even then, it
+    waits, and its priority restarts at 0."""
     steps_per_robot: int = pydantic.Field(40, ge=1)
-    """Maximum number of decisions per call for each robot, on average."""
+    """Maximum number of decisions per call, divided by the number of robots."""
 
 
 class Pas(PathPlanning[PasParameters]):
-    """PAS: all paths grow together in time; a robot without options makes others backtrack."""
+    """PAS: extends all paths together; a robot without options makes others take back decisions."""
 
     parameters_model = PasParameters
     planner = "pas"

@@ -1,4 +1,4 @@
-"""PP PIBT: priority inheritance with backtracking, one straight run at a time."""
+"""PP PIBT (priority inheritance with backtracking), which plans one straight run at a time."""
 
 from __future__ import annotations
 
@@ -11,15 +11,17 @@ class PibtParameters(RollingParameters):
     """Parameters of PP PIBT."""
 
     runs_granted: int = pydantic.Field(1, ge=1)
-    """Maximum number of straight runs granted to a robot at once; PIBT plans no more than one."""
+    """Maximum number of straight runs that a robot is granted at once. Values above 1 have no
+    effect, since PIBT plans one run at a time."""
     detour_s: float = pydantic.Field(30.0, gt=0)
-    """Maximum time by which the path over a run may exceed the best path."""
+    """Maximum time, in seconds, by which the path that starts with a run may exceed the best
+    path."""
     choices: int = pydantic.Field(8, ge=1)
     """Maximum number of straight runs that a robot tries, the best first."""
 
 
 class Pibt(PathPlanning[PibtParameters]):
-    """PIBT: chooses each robot's next run; robots in its way have to leave first, if they can."""
+    """PIBT: chooses each robot's next run, after robots in the way have left, if they can."""
 
     parameters_model = PibtParameters
     planner = "pibt"

@@ -1,4 +1,4 @@
-"""PP CBS and PBS: tree searches that resolve conflicts between paths."""
+"""PP CBS and PBS, tree searches that resolve conflicts between paths."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class TreeParameters(RollingParameters):
-    """Parameters of PP CBS: limits of the search."""
+    """Parameters of PP CBS, which limit the search."""
 
     nodes: int = pydantic.Field(60, ge=1)
-    """Maximum number of tree nodes per call."""
+    """Maximum number of nodes of the search tree per call."""
     labels: int = pydantic.Field(2_000, ge=1)
     """Maximum number of labels in the search for one robot."""
 
@@ -20,18 +20,24 @@ class PbsParameters(TreeParameters):
     """Parameters of PP PBS."""
 
     window_s: float = pydantic.Field(20.0, gt=0)
-    """Horizon within which robots avoid each other."""
+    """Horizon, in seconds, within which robots avoid each other."""
 
 
 class Cbs(PathPlanning[TreeParameters]):
-    """CBS: of two conflicting robots, one avoids the other; seeks the best choices, no horizon."""
+    """Conflict-based search: branches on which of two conflicting robots gives way, best first.
+
+    Paths are planned up to the destinations, without a horizon.
+    """
 
     parameters_model = TreeParameters
     planner = "cbs"
 
 
 class Pbs(PathPlanning[PbsParameters]):
-    """PBS: of two conflicting robots, one plans around the other, within a rolling horizon."""
+    """Priority-based search: branches on which of two conflicting robots plans around the other.
+
+    Only conflicts within a rolling horizon are resolved.
+    """
 
     parameters_model = PbsParameters
     planner = "pbs"

@@ -1,4 +1,4 @@
-"""PP WHCA*: windowed hierarchical cooperative A*, in two variants."""
+"""PP WHCA* (windowed hierarchical cooperative A*), in two variants."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class WhcaParameters(RollingParameters):
     """Parameters of both variants of WHCA*."""
 
     window_s: float = pydantic.Field(20.0, gt=0)
-    """Horizon within which robots avoid each other."""
+    """Horizon, in seconds, within which robots avoid each other."""
     labels: int = pydantic.Field(2_000, ge=1)
     """Maximum number of labels in the search for one robot."""
 
@@ -20,22 +20,24 @@ class WhcaVolatileParameters(WhcaParameters):
     """Parameters of the volatile variant."""
 
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """Time step by which a robot of higher priority waits until others have made room."""
+    """Time steps, in seconds, in which a robot of higher priority waits until others have made
+    room."""
     rounds: int = pydantic.Field(10, ge=1)
-    """Maximum number of planning rounds per call; after the last, robots without a path wait."""
+    """Maximum number of planning rounds per call; after the last round, robots without a path
+    wait."""
     restart_at_once: bool = True
     """Whether a round ends as soon as one robot finds no path."""
 
 
 class WhcaVolatile(PathPlanning[WhcaVolatileParameters]):
-    """WHCA*v: replans all robots in every call, and again with other priorities if one fails."""
+    """WHCA*v: plans all robots anew in every call, and again if a robot finds no path."""
 
     parameters_model = WhcaVolatileParameters
     planner = "whca-v"
 
 
 class WhcaPersistent(PathPlanning[WhcaParameters]):
-    """WHCA*n: plans the robots that need it around the existing reservations of the others."""
+    """WHCA*n: plans the robots that need a path, around the existing reservations of the others."""
 
     parameters_model = WhcaParameters
     planner = "whca-n"

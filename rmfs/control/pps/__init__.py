@@ -1,4 +1,4 @@
-"""Pod selection (PPS): which pod comes to a station, or which station a carried pod goes to."""
+"""Pod selection (PPS): which pod comes to a station, or to which station a carried pod goes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 Requests = Literal["assigned", "assigned-and-completable", "assigned-and-queued"]
-"""Orders whose requests count: assigned ones; also queued ones that the pod completes; or all."""
+"""Orders whose requests count: assigned ones; also queued ones that the pod completes; or also all
+queued ones. A request is the need of an order for one unit."""
 
 _REACH: dict[Requests, int] = {
     "assigned": 0,
@@ -29,18 +30,20 @@ _REACH: dict[Requests, int] = {
 
 
 class LateBinding(Parameters):
-    """Parameters of every PPS rule; there are queued orders only under POA queue."""
+    """Parameters of every PPS rule. Queued orders exist only with POA `queue`."""
 
     late_picks: bool = True
-    """Whether new requests are bound to a pod on its way to a pick station."""
+    """Whether units of new orders are bound to a pod that is already on its way to their
+    station."""
     late_bundles: bool = True
-    """Whether new bundles are added to a pod on its way to a replenishment station."""
+    """Whether new bundles are added to a pod that is already on its way to their station."""
     consider: Requests = "assigned-and-completable"
-    """Requests for which pods are brought: those of `assigned` orders, also those of queued orders
-    that the pod completes (`assigned-and-completable`), or also those of all queued orders
+    """Orders for which pods are brought: those `assigned` to the station; also those queued there
+    that the pod completes (`assigned-and-completable`); or also all those queued there
     (`assigned-and-queued`)."""
     reserve: Requests = "assigned-and-completable"
-    """Requests that are bound to a pod when it is brought; at least those in `consider`."""
+    """Orders whose units are bound to a pod when it is brought. The choices are those of
+    `consider`; no fewer orders may be chosen than there."""
 
     @pydantic.model_validator(mode="after")
     def _reserve_what_is_considered(self) -> LateBinding:
@@ -58,29 +61,34 @@ class PodSelection(Controller[P]):
     """Chooses pods for robots that TA sends to work for a station.
 
     TA asks which pod an empty robot should bring to a station, or to which station a pod that has
-    been served should go next. The simulation then binds the requests that the pod can serve there.
+    been served should go next. The simulation then binds the requests (units that orders need) that
+    the pod can serve there.
     """
 
     problem = Problem.PPS
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Yield questions for an optimiser; only called after `subscriptions`, by default never."""
+        """Yield questions to an optimiser; called only after the events in `subscriptions`."""
         return iter(())
 
     @abstractmethod
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
-        """Choose an available pod with units for open requests of the station, or -1."""
+        """Choose an available pod with units that orders at the station need; -1: none."""
 
     @abstractmethod
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int | By[int]:
-        """Choose an available pod for which bundles wait at the station, or -1."""
+        """Choose an available pod for which bundles wait at the station; -1: none."""
 
     @abstractmethod
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int | By[int]:
-        """Choose one of several stations that a robot's pod can serve; there is at least one."""
+        """Choose one of the given stations, all of which the robot's pod can serve."""
 
     def serves(self, pod: int, station: int) -> bool:
-        """Return whether a pod has work at a station, by `consider`; never at other kinds."""
+        """Return whether a pod has work at a pick or replenishment station.
+
+        At stations of other kinds it has none. The parameter `consider` determines which orders
+        count.
+        """
         view = self.view
         target = view.all_stations[station]
         if isinstance(target, ReplenishmentStation):

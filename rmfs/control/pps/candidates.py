@@ -47,13 +47,13 @@ class Candidates:
         return Candidates(self.view, self.robot, self.station, self.pods[to])
 
     def waypoints(self) -> NDArray[np.int32]:
-        """Waypoints at which the pods are stored, shape (C,)."""
+        """Return the waypoints at which the pods are stored, shape (C,)."""
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """How many of the two, robot and station, are on another tier than each pod, shape (C,).
+        """Return, for each pod, how many of robot and station are on another tier, shape (C,).
 
-        The number 0 if the warehouse has a single tier.
+        If the warehouse has a single tier, the result is the number 0.
         """
         travel = self.view.travel
         if travel.tiers == 1:
@@ -65,16 +65,16 @@ class Candidates:
 
 
 class Completed(NamedTuple):
-    """The orders that each of C pods completes.
+    """Which orders each of C pods completes.
 
     Attributes
     ----------
     orders
         The O orders with open requests; those assigned to the station come first.
     assigned
-        Number of assigned orders; the others are queued.
+        Number of orders assigned to the station; the others are queued there.
     flags
-        Whether a pod covers all open requests of an order, shape (O, C).
+        Whether a pod has all units of an order's open requests, shape (O, C).
     """
 
     orders: Sequence[Order]
@@ -89,7 +89,7 @@ class Completed(NamedTuple):
         weights
             Weight of each of the O orders.
         queued
-            Whether queued orders are counted; otherwise assigned ones.
+            Whether only queued orders are counted; otherwise, only assigned orders are.
         """
         part = slice(self.assigned, None) if queued else slice(self.assigned)
         # a sum over rows, in their order: repeats on every machine
@@ -105,13 +105,13 @@ class PickCandidates(Candidates):
     Parameters
     ----------
     skus
-        The S SKUs with open requests at the station or, if queued orders count, in its pool.
+        The S SKUs with open requests at the station and, if queued orders count, in its pool.
     have
         Available units of each SKU on each candidate, shape (S, C).
     queued
         The queued orders whose requests count.
     requests
-        Which requests count.
+        Whose requests count (`rmfs.control.pps.Requests`).
     """
 
     def __init__(
@@ -150,13 +150,13 @@ class PickCandidates(Candidates):
         return kept
 
     def servable_units(self) -> NDArray[np.int64]:
-        """Number of open requests of assigned orders that each pod can serve, shape (C,)."""
+        """Return how many open requests of assigned orders each pod can serve, shape (C,)."""
         need = self.view.need[self.station.index][self.skus]
         units: NDArray[np.int64] = np.minimum(self.have, need[:, None]).sum(axis=0)
         return units
 
     def queued_units(self) -> NDArray[np.int64]:
-        """Number of open requests of queued orders that each pod can serve in addition, (C,)."""
+        """Return how many open requests of queued orders each pod can serve in addition, (C,)."""
         if self.requests == "assigned-and-completable":
             done = self.completed()
             units = [float(order.open_units) for order in done.orders]
@@ -168,11 +168,11 @@ class PickCandidates(Candidates):
         return served
 
     def completed(self) -> Completed:
-        """Return the orders whose open requests each pod covers completely.
+        """Return which orders each pod completes, that is, whose open requests it serves entirely.
 
         Assigned orders are considered in the sequence of their assignment, then queued ones in the
-        sequence in which they were queued. Each takes the units it needs from the pod if all of
-        them are available. Orders without open requests do not count.
+        sequence in which they were queued. An order takes its units from the pod only if the pod
+        has all of them left. Orders without open requests do not count.
         """
         if self._completed is None:
             self._completed = self._find_completed()
@@ -203,8 +203,8 @@ def pick_candidates(
     Parameters
     ----------
     requests
-        Which requests count. Queued orders never count while the station has no free slot, as a pod
-        might be brought in vain.
+        Whose requests count. Queued orders never count while the station has no free slot, because
+        a pod might be brought in vain.
     """
     skus = list(station.requests.lines)
     queued: list[Order] = []

@@ -1,4 +1,4 @@
-"""Criteria for pods; the highest score wins. A controllers file can select and configure them."""
+"""Criteria for the choice of a pod, set in a controllers file; the highest score wins."""
 
 from __future__ import annotations
 
@@ -22,44 +22,51 @@ if TYPE_CHECKING:
     Scores = NDArray[np.float64] | NDArray[np.int64]
 
 _OTHER_TIER = 1000.0
-"""Penalty in units for a pod on another tier, more than any pod can serve."""
+"""Deduction from a score for each of robot and station that is on another tier than the pod.
+
+It is larger than the number of units that any pod can serve.
+"""
 
 NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 Share = Annotated[float, pydantic.Field(ge=0, le=1)]
 
 
 class PodCriterion(Parameters):
-    """Base class of criteria for pods."""
+    """Base class of the criteria for the choice of a pod."""
 
     def prepare(self, view: View) -> None:
         """Request the trackers that the criterion needs; called when the controller is created."""
 
 
 class RandomCriterion(PodCriterion):
-    """Prefers a random pod; optionally, pods on the tiers of robot and station come first."""
+    """Prefers a random pod; pods on the tiers of robot and station may come first."""
 
     criterion: Literal["random"] = "random"
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Uniform in [0, 1), minus 1 each for robot and station on another tier."""
+        """Return scores drawn uniformly from [0, 1).
+
+        If `prefer_same_tier` is set, the score of a pod is reduced by 1 for each of robot and
+        station that is on another tier.
+        """
         scores: Scores = rng.random(len(candidates))
         return scores - candidates.other_tiers() if self.prefer_same_tier else scores
 
 
 class Nearest(PodCriterion):
-    """Prefers the pod with the shortest way from the robot to the pod and on to the station."""
+    """Prefers the pod with the shortest trip from the robot to the pod and on to the station."""
 
     criterion: Literal["nearest"] = "nearest"
     metric: Metric = "time"
     """Measure of length: `euclidean`, `manhattan` (m), `path` (m along the waypoints) or `time`
     (s)."""
     estimate: bool = True
-    """For `time`: whether the time from robot to pod is estimated by the Manhattan distance."""
+    """For `time`: whether the time from the robot to the pod is estimated by Manhattan distance."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Minus the travel time in s, or minus the distance in m."""
+        """Return minus the travel time in s, or minus the distance in m."""
         if self.metric == "time":
             return -_seconds(candidates, self.estimate, estimate_station=False)
         travel, pods = candidates.view.travel, candidates.waypoints()
@@ -74,16 +81,16 @@ class Fill(PodCriterion):
 
     criterion: Literal["fill"] = "fill"
     prefer_fullest: bool = True
-    """Whether full pods come first; otherwise empty ones do."""
+    """Whether full pods come first; otherwise, empty pods do."""
     binary: bool = True
-    """Whether pods are compared only with the threshold, and not with each other."""
+    """Whether pods are only compared with the threshold, not with each other."""
     threshold: Share = 0.7
     """Share of used capacity that separates full pods from empty ones."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """With `binary`, 1 on the preferred side of the threshold and 0 otherwise.
+        """Return the share of used capacity, with a minus sign if empty pods are preferred.
 
-        Otherwise the share of used capacity, negative if empty pods are preferred.
+        With `binary`, return 1 for pods on the preferred side of the threshold, and 0 for others.
         """
         inventory = candidates.view.inventory
         share = inventory.used[candidates.pods] / inventory.capacity[candidates.pods]
@@ -94,7 +101,7 @@ class Fill(PodCriterion):
 
 
 class PickDemand(PodCriterion):
-    """Prefers the pod with the most units that orders need, in the backlog or at any station."""
+    """Prefers the pod with the most units that orders in the backlog or at any station need."""
 
     criterion: Literal["demand"] = "demand"
 
@@ -103,7 +110,7 @@ class PickDemand(PodCriterion):
         view.trackers.get(DemandOnPods, "unbound")
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Sum over SKUs of the units on the pod, limited by the open requests for the SKU."""
+        """Return the sum over SKUs of units on the pod, limited by open requests for the SKU."""
         units = candidates.view.trackers.get(DemandOnPods, "unbound").units()
         scores: Scores = units[candidates.pods]
         return scores
@@ -117,7 +124,7 @@ class Completeable(PodCriterion):
     """Whether queued orders count as well."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Number of orders whose open requests the pod covers completely."""
+        """Return the number of orders whose open requests the pod serves entirely."""
         done = candidates.completed()
         flags = done.flags if self.queued else done.flags[: done.assigned]
         scores: Scores = flags.sum(axis=0)
@@ -125,37 +132,42 @@ class Completeable(PodCriterion):
 
 
 class PickWorkAmount(PodCriterion):
-    """Prefers the pod with most work at the station, minus a cost of travel ("pile-on").
+    """Prefers the pod with the most work at the station, minus a cost of travel ("pile-on").
 
-    The work is the value of the requests that the pod can serve. By `metric`, a request is worth
-    one, or the time that its order has been at the station, or its lateness, the latter two divided
-    by the order's open requests. `pile-on`, `age` or `lateness` as a plain name selects the metric.
+    The work is the total value of the requests that the pod can serve. `metric` selects the value
+    of a request: 1, the time that its order has been at the station, or the lateness of its order;
+    time and lateness are divided by the number of the order's open requests
+    (`rmfs.control.pps.requests.value_of`). In a controllers file, the plain names `pile-on`, `age`
+    and `lateness` stand for this criterion with the respective metric.
     """
 
     criterion: Literal["work-amount"] = "work-amount"
     metric: RequestValue = "picks"
-    """Value of a request: `picks` (one), `age` or `lateness` (s per open request)."""
+    """Value of a request: `picks` (1), or `age` or `lateness` of its order (s per open request)."""
     only_positive_lateness: bool = False
-    """For `lateness`: whether orders that are not late yet count as 0 instead of negatively."""
+    """For `lateness`: whether the value of orders that are not late yet is 0 instead of
+    negative."""
     time_cost: NotNegative = 1 / 3
-    """Cost of a second of travel, in picks (or seconds of age or lateness)."""
+    """Cost of a second of travel, in the unit of `metric`: picks, or seconds of age or lateness."""
     completable_boost: NotNegative = 1.0
-    """Additional relative value of requests of orders that the pod can complete; 1: twice."""
+    """Relative increase in the value of requests of orders that the pod can complete; with 1, they
+    count twice."""
     queued_weight: NotNegative = 0.2
-    """Value of a request of a queued order, relative to one of an assigned order."""
+    """Value of a request of a queued order, relative to that of a request of an assigned order."""
     boost_queued: bool = True
-    """Whether the boost also goes to queued orders."""
+    """Whether `completable_boost` applies to queued orders, too."""
     estimate_to_pod: bool = True
-    """Whether the time from robot to pod is estimated by the Manhattan distance."""
+    """Whether the time from the robot to the pod is estimated by Manhattan distance."""
     estimate_to_station: bool = False
-    """Whether the time from pod to station is estimated by the Manhattan distance."""
+    """Whether the time from the pod to the station is estimated by Manhattan distance."""
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Value of the servable requests, with boost, minus the cost of travel time.
+        """Return the value of the requests that the pod can serve, minus the cost of travel time.
 
-        Pods on other tiers than robot or station get a penalty if `prefer_same_tier` is set.
+        If `prefer_same_tier` is set, the score of a pod is reduced for each of robot and station
+        that is on another tier.
         """
         scores = self._work(candidates)
         if self.time_cost:
@@ -200,16 +212,16 @@ class PickWorkAmount(PodCriterion):
 class WaveWork(PodCriterion):
     """Prefers the pod with the most units for the first wave of the station.
 
-    A wave consists of orders that are due together, as for one truck. The first wave contains late
-    orders and the orders of the station that are due next.
+    A wave consists of orders that are due together, as for one truck. The first wave of a station
+    contains its late orders and those of its orders that are due next.
     """
 
     criterion: Literal["wave"] = "wave"
     wave_s: NotNegative = 0.0
-    """Orders due within this many seconds of the next one belong to its wave."""
+    """Orders due within this many seconds after the next due order belong to its wave."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Number of units for assigned orders of the first wave that the pod can serve."""
+        """Return the units that the pod can serve for assigned orders of the first wave."""
         orders = candidates.pick_station.orders.values()
         coming = [order.due_s for order in orders if order.due_s >= candidates.view.now_s]
         last_s = min(coming, default=candidates.view.now_s) + self.wave_s
@@ -217,16 +229,20 @@ class WaveWork(PodCriterion):
 
 
 class BundleWorkAmount(PodCriterion):
-    """Prefers the pod with the most, or the longest waiting, bundles at the station."""
+    """Prefers the pod for which the most, or the longest waiting, bundles are at the station."""
 
     criterion: Literal["work-amount"] = "work-amount"
     age: bool = False
-    """Whether bundles are weighted by the time since they were assigned, instead of equally."""
+    """Whether bundles are weighted by the time since their assignment; otherwise, equally."""
     prefer_same_tier: bool = True
     """Whether pods on the tiers of robot and station come first."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Number of bundles waiting at the station for the pod, or total waiting time in s."""
+        """Return the number of bundles waiting for the pod, or their total waiting time in s.
+
+        If `prefer_same_tier` is set, the score of a pod is reduced for each of robot and station
+        that is on another tier.
+        """
         view = candidates.view
         station = candidates.station.number
         if self.age:
@@ -245,12 +261,12 @@ class BundleWorkAmount(PodCriterion):
 
 
 class BundleDemand(PodCriterion):
-    """Prefers the pod whose bundles at the station are most in demand."""
+    """Prefers the pod whose bundles waiting at the station are most in demand."""
 
     criterion: Literal["demand"] = "demand"
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Sum over the bundles of their units, limited by the open requests for the SKU."""
+        """Return the sum over bundles of their units, limited by the open requests for the SKU."""
         view = candidates.view
         station = candidates.station.number
         waiting = view.replenishment_stations[station].waiting
@@ -311,10 +327,10 @@ _SHORT: dict[str, dict[str, Any]] = {
 
 
 def by_name(value: Any) -> Any:
-    """Return a table for a plain name, which stands for a criterion with its defaults.
+    """Return the table of a criterion given by its name alone; its parameters have their defaults.
 
-    `pile-on`, `age` and `lateness` become `work-amount` with that metric. Other values are returned
-    unchanged.
+    The names `pile-on`, `age` and `lateness` stand for `work-amount` with the respective metric.
+    Other values are returned unchanged.
     """
     given = {"criterion": value} if isinstance(value, str) else value
     if isinstance(given, dict) and given.get("criterion") in _SHORT:

@@ -1,4 +1,4 @@
-"""PPS lexicographic: criteria in order of priority, each breaking the ties of those before."""
+"""PPS lexicographic: applies criteria in order of priority, each to the ties that are left."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Criterion(Protocol):
     """Rates the pods of `rmfs.control.pps.candidates`; the highest score wins."""
 
     def score(self, candidates: Any, rng: np.random.Generator) -> np.ndarray[Any, Any]:
-        """Scores of all candidates, shape (C,)."""
+        """Return the scores of all candidates, shape (C,)."""
         ...
 
 
@@ -52,27 +52,29 @@ class LexicographicParameters(LateBinding):
         Nearest(),
     )
     """Criteria for choosing a pod for a pick station, in order of priority: `random`, `nearest`,
-    `pile-on` (or `work-amount`), `age`, `lateness`, `completeable`, `demand`, `fill`."""
+    `pile-on` (or `work-amount`), `age`, `lateness`, `completeable`, `demand`, `fill`, `wave`."""
     replenishment_pod: Annotated[tuple[BundleCriterion, ...], AtLeastOne] = (
         BundleWorkAmount(),
         Nearest(metric="euclidean"),
         RandomCriterion(),
     )
-    """Criteria for choosing a pod for a replenishment station: `random`, `nearest`, `work-amount`,
-    `demand`."""
+    """Criteria for choosing a pod for a replenishment station, in order of priority: `random`,
+    `nearest`, `work-amount`, `demand`."""
     next_station: Annotated[tuple[NextStationCriterion, ...], AtLeastOne] = (
         MostWork(),
         NearestNextStation(),
         RandomNextStation(),
     )
-    """Criteria for choosing the next station of a pod that has been served, if TA lets it continue
-    to others: `random`, `nearest`, `work-amount` (or `pile-on`, `age`, `lateness`)."""
+    """Criteria, in order of priority, for choosing the next station of a pod that has been served,
+    if TA lets it continue to other stations: `random`, `nearest`, `work-amount` (or `pile-on`,
+    `age`, `lateness`)."""
 
 
 class Lexicographic(PodSelection[LexicographicParameters]):
-    """Chooses the pod that is best by the first criterion, ties by the second, and so on.
+    """Chooses the best pod by the first criterion; each further criterion breaks remaining ties.
 
-    The next station of a pod is chosen likewise. Full ties go to the lowest number.
+    The next station of a pod is chosen likewise. Ties that the criteria leave go to the pod or
+    station with the lowest number.
     """
 
     parameters_model = LexicographicParameters

@@ -1,4 +1,4 @@
-"""PPS linear: the pod, or the station, with the greatest weighted sum of features."""
+"""PPS linear: chooses the pod, or station, with the greatest weighted sum of features."""
 
 from __future__ import annotations
 
@@ -44,7 +44,11 @@ class LinearParameters(LateBinding):
 
 
 class Linear(PodSelection[LinearParameters]):
-    """Chooses the pod, or next station, with the greatest weighted sum; ties: the lowest number."""
+    """Chooses the pod, or the next station, with the greatest weighted sum of features.
+
+    Ties go to the pod or station with the lowest number. Pods are chosen for assigned orders and
+    for queued orders that they complete, regardless of `consider`.
+    """
 
     parameters_model = LinearParameters
 

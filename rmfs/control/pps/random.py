@@ -1,4 +1,4 @@
-"""PPS random: a random pod with work at the station."""
+"""PPS random: draws a pod with work at the station."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ class RandomPod(PodSelection[RandomPodParameters]):
     parameters_model = RandomPodParameters
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Draw one of the available pods that can serve a request."""
+        """Draw one of the available pods that can serve an open request; -1 if there is none."""
         return self._any(pick_candidates(self.view, robot, station, self.parameters.consider))
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Draw one of the available pods for which bundles wait."""
+        """Draw one of the available pods for which bundles wait; -1 if there is none."""
         return self._any(replenishment_candidates(self.view, robot, station))
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Draw a station."""
+        """Draw one of the stations."""
         return stations[self.draw(len(stations))]
 
     def _any(self, candidates: Candidates) -> int:

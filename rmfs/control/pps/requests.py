@@ -1,4 +1,4 @@
-"""The value of an order's requests for PPS."""
+"""The value of serving an order's requests, as PPS rules see it."""
 
 from __future__ import annotations
 
@@ -13,15 +13,17 @@ RequestValue = Literal["picks", "age", "lateness"]
 def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool) -> float:
     """Return the value of one open request of an order.
 
+    A request is one unit that the order needs; it is open until it is bound to a pod.
+
     Parameters
     ----------
     metric
-        `picks`: 1. `age`: seconds since the order was assigned or, while it is queued, since it was
-        queued, divided by its open requests. `lateness`: seconds since its due time (negative
-        before it), divided by its open requests and, after the due time, multiplied by the weight
-        of the order's class.
+        `picks`: the value is 1. `age`: the seconds since the order was assigned (if it is only
+        queued: since it was queued), divided by the number of its open requests. `lateness`: the
+        seconds since its due time, negative before, divided by the number of its open requests;
+        after the due time, also multiplied by the weight of the order's class.
     positive
-        Whether lateness is 0 before the due time.
+        Whether lateness is 0 instead of negative before the due time.
     """
     if metric == "picks":
         return 1.0

@@ -1,4 +1,4 @@
-"""Criteria for the next station of a carried pod; the highest score wins."""
+"""Criteria for choosing the next station of a carried pod; the highest score wins."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class RandomNextStation(Parameters):
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Uniform in [0, 1)."""
+        """Return scores drawn uniformly from [0, 1)."""
         return rng.random(len(stations))
 
 
@@ -45,7 +45,7 @@ class NearestNextStation(Parameters):
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Minus the distance in m, or minus the travel time in s."""
+        """Return minus the distance in m, or minus the travel time in s."""
         waypoints = np.array([view.stations[station].waypoint for station in stations])
         scores: NDArray[np.float64] = -view.travel.between(robot.waypoint, waypoints, self.metric)
         return scores
@@ -56,16 +56,17 @@ class MostWork(Parameters):
 
     criterion: Literal["work-amount"] = "work-amount"
     metric: RequestValue = "picks"
-    """Value of a request: `picks` (one), `age` or `lateness` (s per open request)."""
+    """Value of a request: `picks` (1), or `age` or `lateness` of its order (s per open request)."""
     only_positive_lateness: bool = False
-    """For `lateness`: whether orders that are not late yet count as 0 instead of negatively."""
+    """For `lateness`: whether the value of orders that are not late yet is 0 instead of
+    negative."""
     bundle_age: bool = False
-    """Whether bundles are weighted by the time since they were assigned, instead of equally."""
+    """Whether bundles are weighted by the time since their assignment; otherwise, equally."""
 
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Value of the open requests of assigned orders, or of the bundles, for the pod."""
+        """Return the value of the requests that the pod can serve, or of the bundles for it."""
         return np.array([self._work(view, robot.pod, station) for station in stations], float)
 
     def _work(self, view: View, pod: int, station: int) -> float:

@@ -1,4 +1,4 @@
-"""Pod storage assignment (PSA): which storage place a carried pod goes to."""
+"""Pod storage assignment (PSA): to which storage location a carried pod goes."""
 
 from __future__ import annotations
 
@@ -22,33 +22,34 @@ P = TypeVar("P", bound=Parameters)
 
 
 class PodStorageAssignment(Controller[P]):
-    """Chooses among the places of `view.storage.places` that are `view.storage.is_empty`.
+    """Chooses the storage location for a pod that a robot has to store.
 
-    It is asked when a robot has to store its pod; the place is reserved immediately.
+    The choice is among those of `view.storage.places` that are empty (`view.storage.is_empty`). The
+    location is reserved immediately.
     """
 
     problem = Problem.PSA
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Yield questions for an optimiser; only called after `subscriptions`, by default never."""
+        """Yield questions to an optimiser; called only after the events in `subscriptions`."""
         return iter(())
 
     @abstractmethod
     def place(self, robot: Robot) -> int | By[int]:
-        """Choose an empty place (waypoint) for the pod of a robot; -1 if there is none."""
+        """Choose an empty storage location (waypoint) for a robot's pod; -1 if there is none."""
 
     def least(self, costs: NDArray[np.float64], among: NDArray[np.bool_]) -> int:
-        """Find the place with the least finite cost; ties: the lowest waypoint.
+        """Find the storage location with the least finite cost; ties go to the lowest waypoint.
 
         Parameters
         ----------
         costs, among
-            Cost of each of the L storage places, and whether it may be chosen, shape (L,).
+            Cost of each of the L storage locations, and whether it may be chosen, shape (L,).
 
         Returns
         -------
         int
-            The waypoint of the place; -1 if none may be chosen or can be reached.
+            The waypoint of the location; -1 if none may be chosen or all costs are infinite.
         """
         masked = np.where(among, costs, np.inf)
         best = int(masked.argmin())

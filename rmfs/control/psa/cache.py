@@ -1,4 +1,4 @@
-"""PSA cache: useful pods near the pick station they come from, the others farther away."""
+"""PSA cache: stores useful pods in a cache near the nearest pick station, the others elsewhere."""
 
 from __future__ import annotations
 
@@ -20,20 +20,22 @@ class CachePlaceParameters(CacheParameters):
     """Parameters of PSA cache."""
 
     metric: Metric = "time"
-    """Measure of the distance from station to place: `euclidean`, `manhattan` (m), `path` (m along
-    the waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
+    """Measure of the distance from station to storage location: `euclidean`, `manhattan` (m),
+    `path` (m along the waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
 
 
 class Cache(PodStorageAssignment[CachePlaceParameters]):
-    """Stores useful pods in the cache of the nearest pick station, and others outside.
+    """Stores useful pods in the cache of the nearest pick station, and other pods outside caches.
 
     The station is the one nearest to the pod by Euclidean distance, even if the pod comes from a
-    replenishment station. A pod deserves a place in this station's cache if the weighted mean of
-    two shares, the free share of the cache and the share of its pods with a lower score, is above a
-    threshold.
-    Such a pod is stored in this cache or, if it has no empty place, outside all caches or else in
-    another cache. Other pods are stored outside all caches or, if there is no empty place, in any
-    cache. The place nearest to the station is chosen; ties: the lowest waypoint.
+    replenishment station. The pod deserves a place in this station's cache if the weighted mean of
+    two shares is above a threshold: the share of the cache that is free, and the share of its pods
+    that have a lower score.
+
+    A pod that deserves it is stored in this cache; if the cache is full, outside all caches; and if
+    there is no room either, in another cache. Any other pod is stored outside all caches or, if
+    there is no room, in any cache. Among the empty storage locations of the zone, the one nearest
+    to the station is chosen; ties go to the lowest waypoint.
     """
 
     parameters_model = CachePlaceParameters
@@ -47,7 +49,7 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
         self._stations = np.array([station.waypoint for station in view.pick_stations])
 
     def place(self, robot: Robot) -> int:
-        """Choose a place in the zone that suits the pod, or else in other zones."""
+        """Choose a storage location in the zone that suits the pod, or else in other zones."""
         empty, cache_of = self.view.storage.is_empty, self._caching.zones.cache_of
         station = int(self.view.travel.metres(robot.waypoint, self._stations).argmin())
         outside = cache_of < 0

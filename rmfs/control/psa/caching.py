@@ -21,13 +21,14 @@ class CacheParameters(ScoreWeights, ZoneParameters):
     """Parameters of rules that decide which pods belong in a cache."""
 
     speed_weight: Weight = 0.0
-    """Weight of a pod's speed: the popularity of its units, relative to the best pod."""
+    """Weight of a pod's speed: the total popularity of its units, relative to the best pod."""
     fill_weight: Weight = 1.0
-    """Weight of the free share of the cache."""
+    """Weight of the share of the cache that is free."""
     value_weight: Weight = 1.0
-    """Weight of the share of pods in the cache with a lower score than the pod."""
+    """Weight of the share of pods in the cache that have a lower score than the pod."""
     threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.5
-    """Threshold of the weighted mean of these two shares above which a pod deserves a place."""
+    """A pod deserves a place in a cache if the mean of two shares, weighted by `fill_weight` and
+    `value_weight`, is above this threshold."""
 
     @pydantic.model_validator(mode="after")
     def _something_counts_for_caches(self) -> CacheParameters:
@@ -42,7 +43,7 @@ class Caching:
     Attributes
     ----------
     zones
-        Zone of each place.
+        The zones of all storage locations.
     cache_at
         Station to whose cache each waypoint belongs, or -1, shape (N,).
     """
@@ -61,7 +62,7 @@ class Caching:
         return self._scores.scores(given.utility_weight, given.speed_weight)
 
     def is_worth(self, pod: int, station: int, scores: NDArray[np.float64]) -> bool:
-        """Return whether a pod deserves a place in a station's cache; never if it has no places.
+        """Return whether a pod deserves a place in a station's cache; false without a cache.
 
         Parameters
         ----------

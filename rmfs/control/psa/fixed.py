@@ -1,4 +1,4 @@
-"""PSA fixed: every pod has a fixed place."""
+"""PSA fixed: every pod has a fixed storage location."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 class Fixed(PodStorageAssignment[NoParameters]):
-    """Stores every pod at the place where it stood at the start of the run.
+    """Stores every pod at the storage location where it stood at the start of the run.
 
-    If that place is occupied, the pod is stored at the nearest empty place by travel time. This can
-    happen if another rule (repositioning, or an exchanged rule) has stored a pod there, or if a
-    robot rests there because there is no pod to rest beneath.
+    If that location is occupied, the pod is stored at the nearest empty one by travel time. This
+    can happen if another rule (repositioning, or a PSA rule installed earlier) has stored a pod
+    there, or if a robot rests there because there is no pod to rest beneath.
     """
 
     def __init__(self, parameters: NoParameters, view: View, rng: np.random.Generator) -> None:
@@ -29,7 +29,7 @@ class Fixed(PodStorageAssignment[NoParameters]):
         self._distances = PlaceDistances(view, "time")
 
     def place(self, robot: Robot) -> int:
-        """Return the pod's own place, or the nearest empty one."""
+        """Return the pod's own storage location, or else the nearest empty one."""
         storage = self.view.storage
         own = self._own[robot.pod]
         if storage.is_empty[storage.place_index[own]]:

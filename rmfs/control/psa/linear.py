@@ -1,4 +1,4 @@
-"""PSA linear: the storage place with the greatest weighted sum of features."""
+"""PSA linear: chooses the storage location with the greatest weighted sum of features."""
 
 from __future__ import annotations
 
@@ -30,12 +30,15 @@ class LinearParameters(Parameters):
 
 
 class Linear(PodStorageAssignment[LinearParameters]):
-    """Chooses the empty place with the greatest weighted sum; ties: the lowest waypoint."""
+    """Chooses the empty storage location with the greatest weighted sum of features.
+
+    Ties go to the lowest waypoint.
+    """
 
     parameters_model = LinearParameters
 
     def place(self, robot: Robot) -> int:
-        """Choose the place with the greatest weighted sum."""
+        """Choose the storage location with the greatest weighted sum; -1 if none is empty."""
         found = candidates_for(self.view, Question(Problem.PSA, "place", robot.index))
         row = best_of(found, "place", self.view, self.parameters.weights)
         return int(found[row]) if row >= 0 else -1

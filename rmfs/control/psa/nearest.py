@@ -1,4 +1,4 @@
-"""PSA nearest: the empty place nearest to the pod."""
+"""PSA nearest: chooses the empty storage location nearest to the pod."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class NearestParameters(Parameters):
 
 
 class Nearest(PodStorageAssignment[NearestParameters]):
-    """Chooses the nearest empty place, by default the one with the least travel time.
+    """Chooses the nearest empty storage location, by default the one with the least travel time.
 
-    Ties: the place with the lowest waypoint.
+    Ties go to the lowest waypoint.
     """
 
     parameters_model = NearestParameters
@@ -37,5 +37,5 @@ class Nearest(PodStorageAssignment[NearestParameters]):
         self._distances = PlaceDistances(view, parameters.metric)
 
     def place(self, robot: Robot) -> int:
-        """Find the empty place nearest to the robot."""
+        """Find the empty storage location nearest to the robot; -1 if there is none."""
         return self.least(self._distances.away(robot.waypoint), self.view.storage.is_empty)

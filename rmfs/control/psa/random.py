@@ -1,4 +1,4 @@
-"""PSA random: a random empty place."""
+"""PSA random: draws an empty storage location."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ class RandomPlaceParameters(Parameters):
     """Parameters of PSA random."""
 
     prefer_same_tier: bool = True
-    """Whether places on other tiers are used only if the robot's tier has no empty place."""
+    """Whether other tiers are used only if the robot's tier has no empty storage location."""
 
 
 class RandomPlace(PodStorageAssignment[RandomPlaceParameters]):
-    """Draws an empty place."""
+    """Draws an empty storage location."""
 
     parameters_model = RandomPlaceParameters
 
     def place(self, robot: Robot) -> int:
-        """Draw an empty place, on the robot's tier if preferred and possible."""
+        """Draw an empty storage location, on the robot's tier if preferred and possible."""
         storage = self.view.storage
         places = storage.places[storage.is_empty]
         if self.parameters.prefer_same_tier and self.view.travel.tiers > 1:

@@ -1,4 +1,8 @@
-"""Ranking of pods and places: the higher a pod's score, the more prominent its place."""
+"""Ranking of pods and places: the higher a pod's score, the more prominent its place.
+
+Places are storage locations; a place is prominent if a pick station is near
+(`rmfs.control.trackers.prominence`).
+"""
 
 from __future__ import annotations
 
@@ -23,9 +27,10 @@ class ScoreWeights(Parameters):
     """Weights of utility and speed in the score of a pod (`rmfs.control.trackers.pod_scores`)."""
 
     utility_weight: Weight = 1.0
-    """Weight of a pod's utility: its units needed by orders, relative to the best pod."""
+    """Weight of a pod's utility: the number of its units that orders need, relative to the best
+    pod."""
     speed_weight: Weight = 1.0
-    """Weight of a pod's speed: the popularity of its units, relative to the best pod."""
+    """Weight of a pod's speed: the total popularity of its units, relative to the best pod."""
 
     @pydantic.model_validator(mode="after")
     def _something_counts(self) -> ScoreWeights:
@@ -38,17 +43,20 @@ class RankParameters(ScoreWeights):
     """Parameters of rules that rank pods and places."""
 
     place_buffer: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.05
-    """Additional places over which pods are spread, as a share of all places."""
+    """Additional places over which the pods are spread, as a share of all places."""
     corridor: Annotated[int, pydantic.Field(ge=1)] = 3
-    """Minimum number of ranks that are searched: the target, one better, one worse, ..."""
+    """Minimum number of ranks that are searched: the target, the next better, the next worse,
+    ..."""
 
 
 class Ranking:
     """Ranks pods by score, and finds places of the corresponding rank.
 
-    The r-th of P pods (from 0, ties by number) belongs on the place number floor(r x (P + b) / P)
-    in order of prominence, where b is the share `place_buffer` of the places, rounded down. The
-    rank of that place is the pod's target; places of equal prominence share a rank.
+    The P pods are ranked r = 0, 1, ... in order of score, then of number, and the places 0, 1, ...
+    in order of prominence. Pod r belongs on place floor(r x (P + b) / P), or on the last place if
+    there are fewer places. Here b is the share `place_buffer` of the number of places,
+    rounded down. The rank of that place is the pod's target; places of equal prominence share a
+    rank.
     """
 
     def __init__(self, view: View, parameters: RankParameters) -> None:
@@ -83,9 +91,9 @@ class Ranking:
     def seen(self, target: int) -> NDArray[np.bool_]:
         """Return which places are empty and found in the search from a target, shape (L,).
 
-        Ranks are searched outward from the target, the better one first; ranks beyond the ends
-        count as searched. The search ends when the corridor has been searched and a place has been
-        found.
+        Ranks are searched outward from the target, the next better before the next worse. Ranks
+        that do not exist count as searched. The search ends when at least `corridor` ranks have
+        been searched and an empty place has been found.
         """
         away = self.prominence.rank - target
         look = 2 * np.abs(away) - (away < 0)

@@ -1,4 +1,4 @@
-"""PSA station-based: the empty place nearest to any station."""
+"""PSA station-based: chooses the empty storage location nearest to any station of a kind."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ class StationBasedParameters(Parameters):
     """Parameters of PSA station-based."""
 
     stations: Literal["pick", "replenishment"] = "pick"
-    """Kind of station to which places should be near."""
+    """Kind of station to which the storage location should be near."""
     metric: Metric = "time"
     """Measure of distance: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded
-    robot drives from the place to the station) or `time` (s, unhindered)."""
+    robot drives from the location to the station) or `time` (s, unhindered)."""
 
 
 class StationBased(PodStorageAssignment[StationBasedParameters]):
-    """Chooses the empty place with the shortest distance to a station, wherever the pod is.
+    """Chooses the empty storage location nearest to any station, wherever the pod is.
 
-    Ties: the place with the lowest waypoint.
+    Ties go to the lowest waypoint.
     """
 
     parameters_model = StationBasedParameters
@@ -44,5 +44,5 @@ class StationBased(PodStorageAssignment[StationBasedParameters]):
         self._to_station = distances.to_nearest([station.waypoint for station in stations])
 
     def place(self, robot: Robot) -> int:
-        """Find the empty place nearest to a station."""
+        """Find the empty storage location nearest to a station; -1 if there is none."""
         return self.least(self._to_station, self.view.storage.is_empty)

@@ -1,4 +1,4 @@
-"""PSA turnover: fast pods near the pick stations, slow ones far away."""
+"""PSA turnover: stores fast-moving pods near the pick stations, and slow ones far away."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ class TurnoverPlaceParameters(TurnoverParameters):
     """Parameters of PSA turnover."""
 
     within_class: Literal["nearest", "nearest-to-station", "random"] = "nearest"
-    """Choice of the empty place within a class: nearest to the pod, nearest to a pick station, or
-    random."""
+    """Choice among the empty storage locations of a class: nearest to the pod, nearest to a pick
+    station, or random."""
     metric: Metric = "time"
     """Measure of distance within a class: `euclidean`, `manhattan` (m), `path` (m along the
     waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
 
 
 class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):
-    """Chooses an empty place of the pod's turnover class, or else of the nearest other class.
+    """Chooses an empty storage location of the pod's turnover class, or else of another class.
 
-    If the class has no empty place, the next slower class is tried, then the next faster one, and
-    so on outward. Ties: the place with the lowest waypoint.
+    If the class has no empty location, the next slower class is tried, then the next faster one,
+    then the second slower one, and so on. Ties within a class go to the lowest waypoint.
     """
 
     parameters_model = TurnoverPlaceParameters
@@ -49,7 +49,7 @@ class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):
         self._to_station = self._distances.to_nearest(stations)
 
     def place(self, robot: Robot) -> int:
-        """Choose a place in the pod's own class, or else in other classes."""
+        """Choose a storage location of the pod's own class, or else of other classes."""
         empty = self.view.storage.is_empty
         place_class = self._classes.place_class
         for number in _outward(int(self._classes.pod_class[robot.pod]), self._classes.classes):

@@ -1,4 +1,4 @@
-"""PSA utility: the better a pod, the nearer to a pick station it is stored."""
+"""PSA utility: the higher a pod's score, the nearer to a pick station it is stored."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 class Utility(PodStorageAssignment[RankParameters]):
     """Ranks pods by score and places by prominence, and chooses a place of the matching rank.
 
-    The rule searches outward from the target rank. Of the empty places found, it chooses the one
-    with the least travel time; ties: the lowest waypoint.
+    Places are storage locations; the most prominent one is nearest to a pick station. The rule
+    searches ranks outward from the pod's target rank. Of the empty places found, it chooses the one
+    with the least travel time from the robot; ties go to the lowest waypoint.
     """
 
     parameters_model = RankParameters
@@ -30,6 +31,6 @@ class Utility(PodStorageAssignment[RankParameters]):
         self._distances = PlaceDistances(view, "time")
 
     def place(self, robot: Robot) -> int:
-        """Search outward from the pod's target rank."""
+        """Find a storage location by searching outward from the pod's target rank."""
         seen = self._ranking.seen(self._ranking.target(robot.pod))
         return self.least(self._distances.away(robot.waypoint), seen)

@@ -23,24 +23,26 @@ Seconds = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class Move(NamedTuple):
-    """An available stored pod, and the empty place (waypoint) to which it is to be moved."""
+    """An available stored pod, and the empty storage location (waypoint) to which to move it."""
 
     pod: int
     place: int
 
 
 def nearest_place(view: View, pod: int, among: NDArray[np.bool_], metric: Metric) -> int:
-    """Find the place nearest to the place where a pod is stored; ties: the lowest waypoint.
+    """Find the storage location nearest to that of a pod; ties go to the lowest waypoint.
 
     Parameters
     ----------
     among
-        Whether each of the L places may be chosen, shape (L,).
+        Whether each of the L storage locations may be chosen, shape (L,).
+    metric
+        Measure of distance (`rmfs.control.travel.Metric`).
 
     Returns
     -------
     int
-        The waypoint of the place, or -1 if there is none.
+        The waypoint of the location; -1 if none may be chosen.
     """
     places = view.storage.places[among]
     if not len(places):
@@ -52,32 +54,32 @@ class Pauses(Parameters):
     """Parameters of every rule that moves pods."""
 
     robot_pause_s: Seconds = 15.0
-    """Seconds after a move before the robot may get another one."""
+    """Seconds after a robot has got a move before it may get another move."""
     search_pause_s: Seconds = 15.0
-    """Seconds after an unsuccessful search before the next one."""
+    """Seconds after an unsuccessful search for a move before the next search."""
 
 
 P = TypeVar("P", bound=Parameters)
 
 
 class Repositioning(Controller[P]):
-    """Chooses an available pod and the empty place to which it is moved.
+    """Chooses an available pod, and the empty storage location to which it is moved.
 
     TA asks for a move on behalf of a robot without a pod, usually one that would otherwise rest.
-    Pod and place are reserved immediately, either for that robot or, if an idle robot already
-    stands beneath the pod, for the latter.
+    Pod and location are reserved immediately: for an idle robot that stands beneath the pod or, if
+    there is none, for the robot on whose behalf TA asked.
     """
 
     problem = Problem.REPOSITIONING
     never: ClassVar[bool] = False
-    """Whether it never moves pods, so that it need not be asked."""
+    """Whether the rule never moves pods, so that TA need not ask for moves."""
 
     @abstractmethod
     def move(self, robot: Robot) -> Move | None:
-        """Choose a pod and its new place; None if no move is worthwhile."""
+        """Choose a pod and its new storage location; None if no move is worthwhile."""
 
     def is_ready(self, robot: Robot) -> bool:
-        """Return whether `move` should be called now; must be very fast."""
+        """Return whether `move` should be called for this robot now; this must be very fast."""
         return True
 
 
@@ -85,9 +87,10 @@ Q = TypeVar("Q", bound=Pauses)
 
 
 class Pausing(Repositioning[Q]):
-    """A rule that pauses after a move (per robot) and after an unsuccessful search (all robots).
+    """Base class of rules that pause after moves and after unsuccessful searches.
 
-    If a robot asked in vain during a pause, TA is asked again when the pause ends.
+    A move is followed by a pause for its robot, an unsuccessful search by a pause for all robots.
+    If a pause prevented a search for a robot, TA is asked for decisions again when the pause ends.
     """
 
     def __init__(self, parameters: Q, view: View, rng: np.random.Generator) -> None:
@@ -98,10 +101,10 @@ class Pausing(Repositioning[Q]):
 
     @abstractmethod
     def find(self, robot: Robot) -> Move | None:
-        """Search for the best move."""
+        """Search for the best move; None if there is none."""
 
     def move(self, robot: Robot) -> Move | None:
-        """Search for the best move, and start a pause."""
+        """Search for the best move, and begin the pause that follows."""
         now_s = self.view.now_s
         found = self.find(robot)
         if found is not None:
@@ -120,7 +123,7 @@ class Pausing(Repositioning[Q]):
         return False
 
     def next_event_s(self) -> float:
-        """Simulated time in s of the first end of a pause during which a robot asked in vain."""
+        """Return the simulated time in s at which a pause ends that prevented a search, or inf."""
         if self._again_s <= self.view.now_s:
             self._again_s = inf
         return self._again_s

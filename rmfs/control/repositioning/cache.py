@@ -21,18 +21,22 @@ if TYPE_CHECKING:
     Indices = NDArray[np.intp]
 
 _EQUALS = 32
-"""Maximum number of tied pods, those of lowest number, whose moves are compared by length."""
+"""Maximum number of tied pairs of station and pod, in order of their numbers, whose moves are
+compared by length.
+"""
 
 
 class CacheMoveParameters(ZoneParameters, Pauses):
     """Parameters of repositioning cache."""
 
     free_places: Annotated[int, pydantic.Field(ge=0)] = 8
-    """Number of places of each cache to keep free."""
+    """Number of storage locations of each cache to keep free."""
     empty_below: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.4
-    """Pods with a smaller share of their capacity in use are moved near a replenishment station."""
+    """A pod that is moved out of a cache goes near a replenishment station if the share of its
+    capacity in use is below this."""
     count_backlog: bool = True
-    """Whether orders of the backlog count towards the demand for a pod."""
+    """Whether demand for a pod includes the units that orders in the backlog need; otherwise only
+    those that orders at stations need."""
 
 
 class _Pairs(NamedTuple):
@@ -50,16 +54,21 @@ class _Pairs(NamedTuple):
 
 
 class Cache(Pausing[CacheMoveParameters]):
-    """Keeps a given number of places of each pick station's cache free.
+    """Keeps a given number of storage locations of each pick station's cache free.
 
-    If more are free, a pod from outside all caches is moved in. It is chosen in this order: on the
-    robot's tier if possible; most picks for the station's open requests; most units ordered
-    anywhere; the fullest; the shortest move, of at most 32 pairs of station and pod. If fewer are
-    free, a pod of the cache is moved out: on the robot's tier if possible; fewest picks; fewest
-    ordered units; the emptiest; the nearest to a pick station. It goes to a place outside all
-    zones: the nearest or, if the pod is almost empty, the one nearest to a replenishment station.
-    Moves into a cache come before moves out of one. Moves are measured by Manhattan distance, and
-    nearness to a station by travel time; ties: the lowest pod, then the lowest waypoint.
+    If more are free, a pod from outside all caches is moved in. The choice is made by the following
+    criteria, each of which breaks the ties of those before: the pod is on the robot's tier; it can
+    serve the most units that the station's orders need; it has the most units in demand; it is the
+    fullest; its move is the shortest, compared for at most 32 pairs of station and pod.
+
+    If fewer are free, a pod of the cache is moved out: on the robot's tier if possible; then the
+    one with the fewest units that the station's orders need; the fewest units in demand; the
+    emptiest; the nearest to a pick station. It goes to the nearest storage location outside all
+    zones or, if the pod is almost empty, to the one nearest to a replenishment station.
+
+    Moves into a cache come before moves out of a cache. Lengths of moves are Manhattan distances;
+    distances from a station are travel times. Remaining ties go to the lowest pod, then to the
+    lowest waypoint.
     """
 
     parameters_model = CacheMoveParameters

@@ -22,9 +22,9 @@ class CacheDropOffParameters(CacheParameters, Pauses):
     """Parameters of repositioning cache-drop-off."""
 
     target_fill: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """Share of each cache's places that should hold pods."""
+    """Share of each cache's storage locations that should hold pods."""
     same_tier: bool = False
-    """Whether pods are moved only by robots on their tier."""
+    """Whether pods are moved only by robots on their tier, and only within the tier."""
     metric: Metric = "manhattan"
     """Measure of the length of a move: `euclidean`, `manhattan` (m), `path` (m along the waypoints,
     as a loaded robot drives) or `time` (s, unhindered)."""
@@ -33,14 +33,16 @@ class CacheDropOffParameters(CacheParameters, Pauses):
 class CacheDropOff(Pausing[CacheDropOffParameters]):
     """Clears drop-off zones into caches and storage, then fills or thins out the caches.
 
-    A pod in a drop-off zone is moved into the cache of its station if it deserves a place there (as
-    in PSA cache), and otherwise outside all zones. If no such pod is left, caches are considered in
-    order of their deviation, in places, from the target fill, the largest first: into a cache with
-    too few pods the rule moves the pod with the highest score from outside all zones, if it
-    deserves a place; from a cache with too many pods it moves the pod with the lowest score out.
-    Drop-off zones are considered in the same order of stations; within a zone, the pod with the
-    highest score comes first. Nothing is moved into a drop-off zone. A pod goes to the nearest
-    place; ties: the lowest number.
+    Stations are considered in order of the absolute difference between the number of occupied
+    storage locations in their cache and its target, the largest first. If a drop-off zone holds
+    pods, the pod with the highest score is moved: into the cache of the station if it deserves a
+    place there (as in PSA `cache`) and there is room, and otherwise outside all zones.
+
+    If no pod in a drop-off zone can be moved, the caches are considered. If a cache has too few
+    pods, the pod with the highest score outside all zones is moved in, provided that it deserves a
+    place. If a cache has too many, its pod with the lowest score is moved outside all zones.
+    Nothing is moved into a drop-off zone. A pod goes to the nearest storage location of its new
+    zone; ties go to the lowest number.
     """
 
     parameters_model = CacheDropOffParameters
@@ -58,7 +60,7 @@ class CacheDropOff(Pausing[CacheDropOffParameters]):
         self._drop_off_at[places] = self._zones.drop_off_of
 
     def find(self, robot: Robot) -> Move | None:
-        """Search for a pod in a drop-off zone, then for a cache off its target fill."""
+        """Search for a pod in a drop-off zone, then for a cache off its target."""
         storage = self.view.storage
         pods = storage.is_at_hand.nonzero()[0]
         if self.parameters.same_tier:

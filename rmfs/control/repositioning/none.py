@@ -21,5 +21,5 @@ class NoMoves(Repositioning[NoParameters]):
         return None
 
     def is_ready(self, robot: Robot) -> bool:
-        """Return False: it is never asked."""
+        """Return False, since the rule never moves a pod."""
         return False

@@ -14,24 +14,24 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 _TRIES = 8
-"""Number of pods for which a better place is searched."""
+"""Maximum number of pods for which a better place is searched at a time."""
 
 
 class UtilityParameters(RankParameters, Pauses):
     """Parameters of repositioning utility."""
 
     search_pause_s: Seconds = 120.0
-    """Seconds after an unsuccessful search before the next one."""
+    """Seconds after an unsuccessful search for a move before the next search."""
 
 
 class Utility(Pausing[UtilityParameters]):
     """Moves the pod with the largest distance between the rank of its place and its target rank.
 
-    Pods and places are ranked as in PSA utility, and the new place is found in the same way: of the
-    empty places found in the search outward from the target rank, it is the one nearest to the pod
-    (Manhattan distance; ties: the lowest waypoint). A pod is moved only if its rank gets closer to
-    the target; otherwise the pod with the next largest distance is tried, up to eight. Ties: the
-    pod with the lowest number.
+    Pods and places (storage locations) are ranked as in PSA `utility`, and empty places are
+    searched outward from the pod's target rank in the same way. Of the places found, the one
+    nearest to the pod by Manhattan distance is chosen; ties go to the lowest waypoint. The pod is
+    moved only if this brings it closer to its target rank. Otherwise, the pod with the next largest
+    distance is tried, up to eight pods. Ties go to the pod with the lowest number.
     """
 
     parameters_model = UtilityParameters

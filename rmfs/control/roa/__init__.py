@@ -20,9 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentOrderAssignment(Controller[P]):
     """Chooses stations for the bundles of `view.bundles.without_station`.
 
-    The station reserves the bundle's space immediately. `view.bundles.released` contains those
-    bundles whose pod has been chosen and released. Robots can be sent for a bundle when its station
-    has been chosen, too.
+    The space of the bundle is reserved at its station immediately. `view.bundles.released` contains
+    the bundles for which RPS has chosen a pod and released the choice. TA can send a robot for a
+    bundle when both its pod and its station have been chosen.
     """
 
     problem = Problem.ROA

@@ -1,4 +1,4 @@
-"""ROA random: each bundle to a random station with room."""
+"""ROA random: sends each bundle to a random station with room."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ class RandomStationParameters(Parameters):
     """Parameters of ROA random."""
 
     stick_to_station: bool = True
-    """Whether the last station is chosen again while it has room."""
+    """Whether the last station is chosen again as long as it has room."""
 
 
 class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
     """Sends bundles in order of arrival to random active stations with room.
 
-    By default the last station is chosen again while it has room. The rule does not wait for the
-    choice of the pod. A bundle waits if no station has room.
+    By default, the last station is chosen again as long as it has room. The rule does not wait
+    until RPS has chosen a pod for the bundle. A bundle waits if no station has room.
     """
 
     parameters_model = RandomStationParameters

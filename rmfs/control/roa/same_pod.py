@@ -1,4 +1,4 @@
-"""ROA same-pod: all bundles released for a pod go to one station, together."""
+"""ROA same-pod: sends all bundles released for a pod to one station, together."""
 
 from __future__ import annotations
 
@@ -31,33 +31,34 @@ class SamePodParameters(Parameters):
     """Parameters of ROA same-pod."""
 
     station: StationRule = "nearest"
-    """Choice among stations with room: the nearest to the pod, the lowest or highest share of
-    capacity used, the fewest or most bundles, or random."""
+    """Choice among stations with room: the `nearest` to the pod; the station with the lowest
+    (`emptiest`) or highest (`fullest`) share of its capacity in use, or with the fewest
+    (`least-busy`) or most (`most-busy`) bundles; or `random`."""
     break_batches: bool = False
-    """Whether the bundles of a pod are sent individually, as far as there is room."""
+    """Whether the bundles of a pod are sent one by one, possibly to several stations."""
     first_come_first_served: bool = True
-    """Whether a batch that fits nowhere blocks the batches after it; without effect if batches are
-    broken."""
+    """Whether a batch for which no station has room blocks the batches after it. Without effect
+    with `break_batches`."""
     same_tier: bool = True
     """Whether only stations on the current tier of the pod are considered."""
 
 
 class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
-    """Sends the batch of a pod to one station with room for the whole batch.
+    """Sends the batch of bundles for a pod to one station with room for the whole batch.
 
-    A batch consists of the bundles that RPS has released for one pod and that have no station yet;
-    sent together, they need only one trip of the pod. Batches are considered in the order of their
-    first release. The station is chosen by the station rule, by default the nearest in a straight
-    line from the current position of the pod, even if it is being carried; ties: the station with
-    the lowest number.
+    A batch consists of the bundles that RPS has released for one pod and that have no station yet.
+    If they are sent together, the pod makes only one trip. Batches are considered in the order of
+    their first release. The parameter `station` determines the choice; by default, it is the
+    station nearest to the pod's current position in a straight line, even if the pod is being
+    carried. Ties go to the station with the lowest number.
 
-    An empty station that is smaller than the batch may be chosen, too. The batch is then split: the
-    station gets as much of it as fits.
+    An empty station that is smaller than the batch may be chosen, too. It then gets as many bundles
+    of the batch as fit.
 
-    If batches are broken, a bundle goes to the station of the last bundle of its pod. If that
-    station has no room or is switched off, it goes to the nearest other station; if there was no
-    such bundle, the station rule decides. Bundles that fit nowhere wait without blocking later
-    ones.
+    With `break_batches`, bundles are sent one by one. A bundle goes to the station to which the
+    previous bundle for its pod was sent. If that station has no room or is switched off, the bundle
+    goes to the nearest other station with room. If there was no previous bundle, the parameter
+    `station` decides. Bundles that fit nowhere wait, without blocking later bundles.
     """
 
     parameters_model = SamePodParameters
@@ -69,7 +70,7 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
         self._last: dict[int, ReplenishmentStation] = {}
 
     def decide(self) -> Iterator[SendBundle]:
-        """Yield assignments batch by batch or, if batches are broken, bundle by bundle."""
+        """Yield assignments batch by batch or, with `break_batches`, bundle by bundle."""
         return self._bundles() if self.parameters.break_batches else self._batches()
 
     def _batches(self) -> Iterator[SendBundle]:

@@ -1,4 +1,4 @@
-"""Replenishment pod selection (RPS): the pod of each bundle, and when the choice is released."""
+"""Replenishment pod selection (RPS): which pod a bundle goes to, and when to release the choice."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentPodSelection(Controller[P]):
     """Chooses pods for the bundles of `view.bundles.without_pod`.
 
-    Space for the bundle is reserved on the pod immediately. ROA and TA may act on the choice
-    only after it is released; until then further bundles can be promised to the same pod, so that
+    Space for the bundle is reserved on the pod immediately. ROA and TA may act on the choice only
+    after it has been released. Until then, further bundles can be promised to the same pod, so that
     one trip serves all of them (`view.bundles.unreleased`).
     """
 
@@ -32,5 +32,5 @@ class ReplenishmentPodSelection(Controller[P]):
     def decide(self) -> Iterator[PromiseBundle | ReleasePod | SendBundle | Ask[Any] | By[Any]]:
         """Yield promises and releases until there is nothing more to decide now.
 
-        A rule that also decides ROA sends the bundles of a pod after it has released them.
+        A rule that also decides ROA chooses the stations of a pod's bundles after their release.
         """

@@ -1,4 +1,4 @@
-"""Buffering of RPS decisions until a pod's trip is worthwhile, for all rules that do so."""
+"""Base classes of RPS rules that hold bundles back until a trip of their pod is worthwhile."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Buffered(ReplenishmentPodSelection[P]):
     """Promises bundles one by one and releases a pod's bundles together.
 
     Bundles that a former rule promised but did not release are released in the same way. The rule
-    is also asked when a time-out expires.
+    also decides when a time-out expires.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -39,32 +39,35 @@ class Buffered(ReplenishmentPodSelection[P]):
 
     @abstractmethod
     def choose(self, bundle: Bundle) -> int:
-        """Choose a pod whose load leaves room for the bundle; -1 if there is none."""
+        """Choose a pod with room for the bundle; -1 if there is none."""
 
     @abstractmethod
     def threshold(self, pod: int) -> float:
-        """Return the share of capacity in use or promised at which a pod's bundles are released."""
+        """Return the used or promised share of capacity at which to release a pod's bundles."""
 
     @abstractmethod
     def timeout_s(self, pod: int) -> float:
-        """Return the maximum time in s between the last promise to a pod and its release."""
+        """Return the time in s after the last promise to a pod at which to release its bundles."""
 
     @property
     @abstractmethod
     def shortest_timeout_s(self) -> float:
-        """Lower bound of `timeout_s` over all pods, in s."""
+        """A lower bound of `timeout_s` over all pods, in s."""
 
     def candidates(self) -> list[Bundle]:
         """List the bundles for which a pod can be chosen now, in order of arrival."""
         return list(self.view.bundles.without_pod.values())
 
     def fits(self, bundle: Bundle) -> NDArray[np.bool_]:
-        """Whether each pod has room for a bundle, shape (P,)."""
+        """Return whether each of the P pods has room for a bundle, shape (P,)."""
         inventory = self.view.inventory
         return inventory.load + bundle.space <= inventory.capacity
 
     def best(self, bundle: Bundle, scores: NDArray[Any]) -> int:
-        """Find the pod with room that has the lowest score, ties by number; -1 if there is none."""
+        """Find the pod with the lowest score among those with room; -1 if there is none.
+
+        Ties go to the pod with the lowest number.
+        """
         fits = self.fits(bundle)
         pod = int(scores.argmin())
         if fits[pod]:
@@ -73,7 +76,7 @@ class Buffered(ReplenishmentPodSelection[P]):
         return int(pods[scores[pods].argmin()]) if len(pods) else -1
 
     def decide(self) -> Iterator[PromiseBundle | ReleasePod]:
-        """Yield a promise for each bundle that fits, and releases as they become due."""
+        """Yield a promise for each bundle that fits into a pod, and the releases that are due."""
         inventory = self.view.inventory
         load, capacity = inventory.load.item, inventory.capacity.item
         if self._is_new:
@@ -94,7 +97,7 @@ class Buffered(ReplenishmentPodSelection[P]):
         yield from self._due()
 
     def next_event_s(self) -> float:
-        """Simulated time in s at which the next time-out expires; inf if no bundle is held back."""
+        """Return the simulated time in s at which the next time-out expires, or inf."""
         since = self.view.bundles.unreleased_since_s
         earliest_s = inf
         for pod, time_s in since.items():
@@ -124,7 +127,7 @@ class BufferParameters(Parameters):
     """Parameters of RPS rules with a buffer."""
 
     buffer_threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """Share of a pod's capacity, stored and promised, at which its bundles are released."""
+    """Share of a pod's capacity, used or promised, at which its bundles are released."""
     buffer_timeout_s: Annotated[float, pydantic.Field(ge=0)] = 1200.0
     """Time in seconds after the last promise to a pod at which its bundles are released at the
     latest."""
@@ -134,7 +137,8 @@ class StickyParameters(BufferParameters):
     """Parameters of RPS rules that fill one pod after another."""
 
     stick_to_pod: bool = True
-    """Whether the last pod is chosen again while it has room and until a station serves it."""
+    """Whether the last pod is chosen again until it has no room for a bundle or a replenishment
+    station serves it."""
 
 
 B = TypeVar("B", bound=BufferParameters)
@@ -145,21 +149,21 @@ class EvenlyBuffered(Buffered[B]):
     """Buffers bundles with the same threshold and the same time-out for all pods."""
 
     def threshold(self, pod: int) -> float:
-        """Return the common threshold."""
+        """Return the threshold (share of capacity) of all pods, `buffer_threshold`."""
         return self.parameters.buffer_threshold
 
     def timeout_s(self, pod: int) -> float:
-        """Return the common time-out in s."""
+        """Return the time-out of all pods in s, `buffer_timeout_s`."""
         return self.parameters.buffer_timeout_s
 
     @property
     def shortest_timeout_s(self) -> float:
-        """The common time-out in s."""
+        """The time-out of all pods in s, `buffer_timeout_s`."""
         return self.parameters.buffer_timeout_s
 
 
 class Sticky(EvenlyBuffered[S]):
-    """By default, chooses the last pod again while it has room and until a station serves it."""
+    """Base class of rules that fill one pod after another (`stick_to_pod`)."""
 
     hears = frozenset({Trigger.BUNDLE_STORED})
 
@@ -168,7 +172,7 @@ class Sticky(EvenlyBuffered[S]):
         self._last = -1
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose the last pod or, if that is not possible, a pod by the rule."""
+        """Choose the last pod or, if this is not possible, another pod; -1 if there is none."""
         inventory = self.view.inventory
         last = self._last
         if last >= 0 and inventory.load[last] + bundle.space <= inventory.capacity[last]:

@@ -1,4 +1,4 @@
-"""RPS correlative: the pod whose SKUs are most often ordered together with the bundle's."""
+"""RPS correlative: chooses the pod whose SKUs are most often ordered with the bundle's SKU."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 class Correlative(EvenlyBuffered[BufferParameters]):
-    """Chooses the pod with the highest sum of pair frequencies with the bundle's SKU.
+    """Chooses the pod whose SKUs are most often ordered together with the bundle's SKU.
 
-    The sum is over the SKUs on the pod; the frequency of a pair is the number of orders, including
-    past ones, that contain both SKUs. All pods are candidates, wherever they are. Ties: the pod
-    with the lowest number.
+    The score of a pod is the sum, over its SKUs, of the number of orders (including past ones) that
+    contain both this SKU and that of the bundle. All pods are candidates, wherever they are. Ties
+    go to the pod with the lowest number.
     """
 
     parameters_model = BufferParameters
@@ -29,6 +29,6 @@ class Correlative(EvenlyBuffered[BufferParameters]):
         self._pairs = view.trackers.get(PairFrequency)
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose the pod with the highest sum among those with room."""
+        """Choose the pod with the highest score among those with room; -1 if there is none."""
         orders = self._pairs.orders_with(bundle.sku)
         return self.best(bundle, -orders[self.view.inventory.skus_on].sum(axis=1))

@@ -1,4 +1,4 @@
-"""RPS emptiest: the pod with the lowest load."""
+"""RPS emptiest: chooses the pod with the lowest share of its capacity used or promised."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 class Emptiest(Sticky[StickyParameters]):
-    """Chooses the pod with the lowest share of its capacity stored or promised.
+    """Chooses the pod with the lowest share of its capacity used or promised.
 
-    All pods are candidates, wherever they are. Ties: the pod with the lowest number.
+    All pods are candidates, wherever they are. Ties go to the pod with the lowest number.
     """
 
     parameters_model = StickyParameters
 
     def choose_anew(self, bundle: Bundle) -> int:
-        """Choose the pod with the lowest load share among those with room."""
+        """Choose the pod with the lowest share among those with room; -1 if there is none."""
         inventory = self.view.inventory
         return self.best(bundle, inventory.load / inventory.capacity)

@@ -1,4 +1,4 @@
-"""RPS least-demand: the pod whose SKUs are least in demand."""
+"""RPS least-demand: chooses the pod whose SKUs are least in demand."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ if TYPE_CHECKING:
 
 
 class LeastDemand(Sticky[StickyParameters]):
-    """Chooses the pod with the least demand for its SKUs, which pickers will miss least.
+    """Chooses the pod with the least demand for its SKUs: the pod that pickers will miss least.
 
-    The demand for a SKU is the number of units ordered and not yet picked, in the backlog and at
-    stations. The demand for a pod is the sum of the total demands for the SKUs it contains. All
-    pods are candidates, wherever they are. Ties: the pod with the lowest number.
+    The demand for a SKU is the number of its units that are ordered and not yet picked, in the
+    backlog and at stations. The demand for a pod is the sum of the demands for the SKUs on it,
+    however many units it has. All pods are candidates, wherever they are. Ties go to the pod with
+    the lowest number.
     """
 
     parameters_model = StickyParameters
 
     def choose_anew(self, bundle: Bundle) -> int:
-        """Choose the pod with the least demand among those with room."""
+        """Choose the pod with the least demand among those with room; -1 if there is none."""
         inventory = self.view.inventory
         demand = np.append(inventory.wanted, 0)
         return self.best(bundle, demand[inventory.skus_on].sum(axis=1))

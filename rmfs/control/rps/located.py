@@ -18,13 +18,13 @@ B = TypeVar("B", bound=BufferParameters)
 
 
 class Located(EvenlyBuffered[B]):
-    """Chooses pods only for bundles whose station is known."""
+    """Base class of rules that choose pods only for bundles whose station is known."""
 
     subscriptions = frozenset({Trigger.BUNDLE_SENT})
     waits_for = frozenset({Problem.ROA})
 
     def candidates(self) -> list[Bundle]:
-        """List the bundles that have a station."""
+        """List the bundles without a pod that have a station, in order of arrival."""
         waiting = self.view.bundles.without_pod.values()
         return [bundle for bundle in waiting if bundle.station >= 0]
 
@@ -32,15 +32,16 @@ class Located(EvenlyBuffered[B]):
 class Nearest(Located[BufferParameters]):
     """Chooses the pod nearest, in a straight line, to the station that ROA chose for the bundle.
 
-    Pods on the station's tier come before those on other tiers, and stored pods before carried
-    ones, whose distance is that of the robot. Ties: the pod with the lowest number. It requires an
-    ROA rule that does not wait for the pod (`random`).
+    Stored pods come before carried ones; within each of these groups, pods on the station's tier
+    come first. The distance of a carried pod is that of its robot. Ties go to the pod with the
+    lowest number. The rule requires an ROA rule that does not wait for the choice of the pod
+    (`random`).
     """
 
     parameters_model = BufferParameters
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose the nearest pod with room, stored ones first."""
+        """Choose the nearest pod with room, stored pods first; -1 if there is none."""
         storage, waypoint = self.view.storage, self.view.stations[bundle.station].waypoint
         distances = self.view.travel.distances_to(waypoint, "euclidean")
         metres = np.where(storage.is_stored, distances[storage.pod_waypoint], np.inf)
@@ -56,22 +57,23 @@ class ReactiveParameters(BufferParameters):
     """Parameters of RPS reactive."""
 
     among_equals: Literal["random", "emptiest"] = "random"
-    """Choice among pods that are equally easy to reach: random, or the lowest share of capacity
-    stored or promised."""
+    """Choice among pods that are equally easy to bring: random, or the pod with the lowest share of
+    its capacity used or promised (`emptiest`)."""
 
 
 class Reactive(Located[ReactiveParameters]):
     """Chooses a pod that is easy to bring to the station that ROA chose for the bundle.
 
-    Stored pods on the station's tier come first; then those that are carried or on another tier,
-    then those that are both. Among these, a random one is chosen, or the emptiest, ties by number.
-    It requires an ROA rule that does not wait for the pod (`random`).
+    Stored pods on the station's tier come first; then pods that are either carried or on another
+    tier; then pods that are both. Within the first of these groups that has a pod with room, the
+    choice is random, or the emptiest pod is chosen; ties go to the lowest number. The rule requires
+    an ROA rule that does not wait for the choice of the pod (`random`).
     """
 
     parameters_model = ReactiveParameters
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose among the pods with room."""
+        """Choose among the pods with room; -1 if there is none."""
         inventory = self.view.inventory
         if self.parameters.among_equals == "random":
             scores = self.rng.random(len(inventory.capacity))

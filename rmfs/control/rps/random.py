@@ -1,4 +1,4 @@
-"""RPS random: a random pod with room."""
+"""RPS random: draws a pod with room."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Bundle
 
 _DRAWS = 16
-"""Number of pods drawn before the pods with room are listed."""
+"""Number of draws from all pods, before a draw from the pods with room."""
 
 
 class RandomPod(Sticky[StickyParameters]):
@@ -19,7 +19,7 @@ class RandomPod(Sticky[StickyParameters]):
     parameters_model = StickyParameters
 
     def choose_anew(self, bundle: Bundle) -> int:
-        """Draw a pod with room."""
+        """Draw a pod with room; -1 if there is none."""
         inventory = self.view.inventory
         pods = len(inventory.capacity)
         for _ in range(_DRAWS):

@@ -1,4 +1,4 @@
-"""RPS turnover: fast-moving SKUs go into fast-moving pods, by classes."""
+"""RPS turnover: puts fast-moving SKUs into fast-moving pods, by classes."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ class TurnoverPodParameters(TurnoverParameters):
     """Parameters of RPS turnover."""
 
     emptiest: bool = True
-    """Whether the pod of a class with the lowest share of its capacity stored or promised is
-    chosen; otherwise a random one."""
+    """Whether the pod of a class with the lowest share of its capacity used or promised is chosen;
+    otherwise, a pod is drawn."""
     buffer_thresholds: tuple[Share, ...] = (0.8, 0.8, 0.8)
-    """For each class, the share of a pod's capacity, stored and promised, at which its bundles are
+    """For each class, the share of a pod's capacity, used or promised, at which its bundles are
     released."""
     buffer_timeouts_s: tuple[Seconds, ...] = (1200.0, 1200.0, 1200.0)
     """For each class, the time in seconds after the last promise to a pod at which its bundles are
@@ -42,13 +42,14 @@ class TurnoverPodParameters(TurnoverParameters):
 
 
 class Turnover(Buffered[TurnoverPodParameters]):
-    """Chooses a pod of the class of the bundle's SKU, which brings fast SKUs close to pickers.
+    """Chooses a pod of the turnover class of the bundle's SKU; fast SKUs thus get close to pickers.
 
     Classes are formed by units ordered (`rmfs.control.trackers.turnover`); the fastest pods belong
-    to the class with the nearest places. If no pod of the class has room, the next slower class is
-    tried, then the next faster, the second slower, and so on. Within a class the last pod is chosen
-    again while it has room and until a station serves it; then the emptiest one, ties by number, or
-    a random one. All pods are candidates, wherever they are.
+    to the class of the storage locations nearest to pick stations. If no pod of the class has room,
+    the next slower class is tried, then the next faster one, the second slower one, and so on.
+    Within a class, the last pod is chosen again until it has no room or a replenishment station
+    serves it. Then the emptiest pod is chosen (ties go to the lowest number), or a random pod. All
+    pods are candidates, wherever they are.
     """
 
     parameters_model = TurnoverPodParameters
@@ -62,7 +63,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
         self._last = [-1] * self._classes.classes
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose a pod of the SKU's class, or of a class close to it."""
+        """Choose a pod of the SKU's class, or of a class close to it; -1 if no pod has room."""
         fits = self.fits(bundle)
         if not fits.any():
             return -1
@@ -78,7 +79,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
         return -1
 
     def threshold(self, pod: int) -> float:
-        """Return the threshold of the pod's class."""
+        """Return the threshold (share of capacity) of the pod's class."""
         return self.parameters.buffer_thresholds[self._classes.pod_class.item(pod)]
 
     def timeout_s(self, pod: int) -> float:
@@ -87,7 +88,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
 
     @property
     def shortest_timeout_s(self) -> float:
-        """The shortest time-out of a class in s."""
+        """The shortest time-out of all classes in s."""
         return min(self.parameters.buffer_timeouts_s)
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
@@ -102,7 +103,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
 
 
 def outward(middle: int, count: int) -> list[int]:
-    """List the numbers from 0 to `count` - 1: `middle`, the next higher, the next lower, ..."""
+    """List the numbers from 0 to `count` - 1 outward from `middle`, higher before lower ones."""
     steps = [middle]
     for away in range(1, count):
         steps += [number for number in (middle + away, middle - away) if 0 <= number < count]

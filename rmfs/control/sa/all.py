@@ -16,7 +16,7 @@ class AllStations(StationActivation[NoParameters]):
     """Switches every station on at the start."""
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations that are off, to be switched on."""
+        """Yield a decision for each station that is off, to switch it on."""
         for station in self.view.stations:
             if not station.active:
                 yield SwitchStation(station.index, active=True)

@@ -1,4 +1,4 @@
-"""SA backlog-threshold: switches stations depending on the amount of waiting work."""
+"""SA backlog-threshold: switches stations according to the amount of waiting work."""
 
 from __future__ import annotations
 
@@ -28,26 +28,29 @@ class BacklogThresholdParameters(Parameters):
     """Parameters of SA backlog-threshold."""
 
     pause_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 600.0
-    """Minimum seconds between switches of stations of the same kind, and before the first one."""
+    """Minimum time, in seconds, between two switches of stations of the same kind, and from the
+    start to the first switch."""
     orders_on: Count = 50
-    """Number of orders in the backlog above which a pick station is switched on."""
+    """A pick station is switched on if more orders than this are in the backlog."""
     bundles_on: Count = 50
-    """Number of bundles in the backlog above which a replenishment station is switched on."""
+    """A replenishment station is switched on if more bundles than this are in the backlog."""
     pick_share_off: Share = 0.7
-    """Share of used slots of the active pick stations below which one is switched off."""
+    """A pick station is switched off if the active ones use less than this share of their slots."""
     replenishment_share_off: Share = 0.7
-    """Share of used space of the active replenishment stations below which one is switched off."""
+    """A replenishment station is switched off if the active ones use less than this share of their
+    space."""
 
 
 class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
     """Switches stations on when much work waits, and off when the active ones have little work.
 
-    All stations are on at the start. After each pause, each kind is considered separately. If more
-    work waits than the threshold, and the used share of the active stations is not below the limit,
-    the first station that is off is switched on. If no more work waits than the threshold, and the
-    used share is below the limit, the last station that is on is switched off. Otherwise nothing
-    changes. The only active station of a kind stays on. `First` and `last` refer to the activation
-    number, ties by number. Bundles held back by RPS count as waiting.
+    All stations are on at the start. Pick and replenishment stations are considered separately,
+    each kind after its own pause. If the backlog is above its threshold, and the used share of the
+    active stations is not below its limit, the first station that is off is switched on. If the
+    backlog is not above its threshold, and the used share is below its limit, the last station that
+    is on is switched off, unless it is the only one. Otherwise nothing changes. Stations are
+    ordered by activation number in the layout, then by number. Bundles held back by RPS count as
+    backlog.
     """
 
     parameters_model = BacklogThresholdParameters
@@ -72,7 +75,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
         self._order = {pick: activation_order(view, pick) for pick in (True, False)}
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield all stations that are off at the start, and later at most one of each kind."""
+        """Switch on all stations at the start; later, switch at most one station of each kind."""
         if not self._started:
             self._started = True
             self._from_s = dict.fromkeys(self._from_s, self.view.now_s + self.parameters.pause_s)
@@ -88,7 +91,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
                 yield switch
 
     def next_event_s(self) -> float:
-        """Simulated time in s at which the next pause ends; inf if there is none."""
+        """Return the simulated time in s at which the next pause ends; inf if there is none."""
         return min((at_s for at_s in self._from_s.values() if at_s > self.view.now_s), default=inf)
 
     def _switch(self, pick: bool) -> SwitchStation | None:

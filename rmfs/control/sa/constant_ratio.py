@@ -21,7 +21,7 @@ class ConstantRatioParameters(Parameters):
     """Parameters of SA constant-ratio."""
 
     active_share: Share = 0.5
-    """Share of all stations that are on."""
+    """Share of all stations that is on."""
     pick_share: Share = 0.5
     """Share of pick stations among the stations that are on."""
 
@@ -29,15 +29,15 @@ class ConstantRatioParameters(Parameters):
 class ConstantRatio(StationActivation[ConstantRatioParameters]):
     """Switches a fixed share of the stations on and the others off, permanently.
 
-    Of n stations, m = floor(active share x n) are on, of which floor(pick share x m) are pick
-    stations. Stations with the lowest activation numbers are on; ties: the lowest number. At least
-    one of each kind is on, if there is one.
+    Of n stations, m = floor(`active_share` x n) are on, of which floor(`pick_share` x m) are pick
+    stations; but at least one station of each kind is on if there is one. Those with the lowest
+    activation numbers in the layout are on; ties go to the lowest number.
     """
 
     parameters_model = ConstantRatioParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations that are not in the desired state."""
+        """Yield a switch for each station that is not in the desired state."""
         on = self._on()
         for station in self.view.stations:
             if station.active != (station.index in on):

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def activation_order(view: View, pick: bool) -> list[int]:
-    """Return the stations of one kind by activation number in the layout, ties by number.
+    """Return the stations of one kind, by activation number in the layout, then by number.
 
     Parameters
     ----------

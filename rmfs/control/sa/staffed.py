@@ -23,11 +23,11 @@ class StaffedParameters(Parameters):
     """Parameters of SA staffed."""
 
     tired: Share = 1.0
-    """Fatigue from which a picker gets no new work; 1: never."""
+    """Fatigue (0 to 1) from which a picker gets no new work. With 1, fatigue has no effect."""
     rested: Share = 0.5
-    """Fatigue at which a tired picker gets work again; below `tired`."""
+    """Fatigue at or below which a tired picker gets work again; must be less than `tired`."""
     look_every_s: Annotated[float, pydantic.Field(ge=1, le=86400)] = 60.0
-    """Seconds between checks of fatigue, from 1 to a day."""
+    """Seconds between checks of fatigue, from 1 to 86,400."""
 
     @pydantic.model_validator(mode="after")
     def _in_order(self) -> StaffedParameters:
@@ -37,7 +37,7 @@ class StaffedParameters(Parameters):
 
 
 class Staffed(StationActivation[StaffedParameters]):
-    """Follows the roster of the scenario, and gives pickers who are too tired a rest.
+    """Follows the roster of the scenario, and lets pickers rest when they are too tired.
 
     A pick station is on while a picker is there. When the picker's fatigue reaches `tired`, the
     station takes no new orders until fatigue falls to `rested`; open orders are still finished.
@@ -47,7 +47,7 @@ class Staffed(StationActivation[StaffedParameters]):
     parameters_model = StaffedParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations that are not in the desired state."""
+        """Yield a switch for each station that is not in the desired state."""
         staff = self.view.staff
         for station in self.view.stations:
             on = staff is None or station.index >= len(staff.at_station)
@@ -57,7 +57,10 @@ class Staffed(StationActivation[StaffedParameters]):
                 yield SwitchStation(station.index, active=on)
 
     def next_event_s(self) -> float:
-        """Simulated time in s at which pickers come or leave or fatigue is checked next, or inf."""
+        """Return the simulated time in s of the next change of pickers or check of fatigue.
+
+        It is inf if there is none.
+        """
         staff = self.view.staff
         if staff is None:
             return inf

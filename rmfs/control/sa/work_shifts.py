@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 class Shift(Parameters):
-    """A time from which stations are on or off."""
+    """A time in the loop from which all stations are on, or off."""
 
     at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
     """Seconds since the start of the loop."""
     on: bool
-    """Whether stations are on from then on."""
+    """Whether stations are on from that time."""
 
 
 class WorkShiftsParameters(Parameters):
@@ -33,8 +33,8 @@ class WorkShiftsParameters(Parameters):
         Shift(at_s=21600.0, on=True),
         Shift(at_s=79200.0, on=False),
     )
-    """Times (`at_s`, s in the loop) at which stations are switched on or off (`on`); the first at
-    0."""
+    """The shifts in order of time. Each has `at_s` (seconds since the start of the loop) and `on`
+    (whether stations are on from then); the first begins at 0."""
     loop_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 86400.0
     """Length of the loop in seconds, after which the shifts repeat."""
 
@@ -51,20 +51,20 @@ class WorkShiftsParameters(Parameters):
 class WorkShifts(StationActivation[WorkShiftsParameters]):
     """Switches all stations together, at the same times of every loop (by default a day).
 
-    The clock is that of the scenario, where time zero is `time_of_day_s`.
+    The clock is that of the scenario: a run begins at the time of day `time_of_day_s`.
     """
 
     parameters_model = WorkShiftsParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations that are not in the state of the current shift."""
+        """Yield a switch for each station that is not in the state of the current shift."""
         on = self._present()[0]
         for station in self.view.stations:
             if station.active != on:
                 yield SwitchStation(station.index, active=on)
 
     def next_event_s(self) -> float:
-        """Simulated time in s of the next change between on and off; inf if there is none."""
+        """Return the simulated time in s of the next change of state; inf if there is none."""
         return self._present()[1]
 
     def _present(self) -> tuple[bool, float]:

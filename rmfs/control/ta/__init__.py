@@ -20,14 +20,14 @@ P = TypeVar("P", bound=Parameters)
 
 
 class Consult(Protocol):
-    """The questions that TA may ask the currently installed controllers of the other problems."""
+    """The questions that TA may ask the controllers currently installed for other problems."""
 
     def serves(self, pod: int, station: int) -> bool:
-        """Ask PPS whether there is work for a pod at a pick or replenishment station."""
+        """Ask PPS whether a pod has work at a pick or replenishment station."""
         ...
 
     def pod_for(self, robot: Robot, station: int) -> int:
-        """Ask PPS for a pod that an empty robot should bring to a station; -1 if there is none."""
+        """Ask PPS which pod a robot should fetch and bring to a station; -1 if there is none."""
         ...
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
@@ -35,15 +35,15 @@ class Consult(Protocol):
         ...
 
     def place_for(self, robot: Robot) -> int:
-        """Ask PSA for an empty place for the pod a robot carries, or -1."""
+        """Ask PSA where to store the pod that a robot carries; -1 if no location is empty."""
         ...
 
     def may_move(self) -> bool:
-        """Return whether the repositioning rule may move pods."""
+        """Return whether the repositioning rule ever moves pods."""
         ...
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask repositioning which pod a robot without a pod should move, and to which place."""
+        """Ask repositioning which pod a robot without a pod should move, and where; or None."""
         ...
 
 
@@ -56,9 +56,9 @@ WORK = frozenset(
 class TaskAllocation(Controller[P]):
     """Gives tasks to the robots of `view.asking` and, optionally, to those of `view.resting`.
 
-    Each decision is applied before the rule is resumed. For a robot left without a task, the rule
-    is asked again at the next trigger. Robots at rest should get work as soon as there is any: by
-    default, rules subscribe to the events of `WORK`.
+    Each decision is applied before the rule is resumed. If a robot is left without a task, the rule
+    is asked about it again at the next trigger. Robots at rest should get work as soon as there is
+    any; therefore rules subscribe to the events of `WORK` by default.
     """
 
     problem = Problem.TA
@@ -71,14 +71,14 @@ class TaskAllocation(Controller[P]):
     ) -> Iterator[TaskDecision | Prepare | AssignOrder | AssignLines | Ask[Any] | By[Any]]:
         """Yield tasks for robots until there is nothing more to assign now.
 
-        A controller that also decides POA yields order assignments as well, and is asked even if no
+        A controller that also decides POA yields assignments of orders, too. It is asked even if no
         robot needs a task.
         """
 
     @abstractmethod
     def rest_place(self, robot: Robot) -> int:
-        """Choose a place (waypoint) where an empty robot may rest; -1 if it should stay.
+        """Choose a waypoint where a robot without a pod may rest; -1 if it should stay.
 
-        The simulation calls this when a robot at rest must make room for another one that fetches
-        the pod above it.
+        The simulation calls this method when a robot at rest must make room for another robot that
+        fetches the pod above it.
         """

@@ -1,4 +1,4 @@
-"""The number of robots for each station, and their assignment, as used by TA balanced."""
+"""How many robots work for each station, and which ones; used by TA rules with station teams."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 
 def split(robots: int, first: float, second: float) -> tuple[int, int]:
-    """Return how many robots two groups get by weight, rounded down.
+    """Divide robots between two groups in proportion to weights; return the number of each group.
 
-    The robot left over, if any, goes to the group with fewer robots, in a tie to the first one; a
-    group of weight 0 gets none. If both weights are 0, no robot is assigned.
+    Numbers are rounded down. A robot left over goes to the group with fewer robots or, in a tie, to
+    the first group, but never to a group of weight 0. If both weights are 0, no robot is assigned.
     """
     total = first + second
     if total <= 0:
@@ -36,7 +36,7 @@ def deal(robots: int, stations: Sequence[int], limit: int, goals: dict[int, int]
     stations
         Stations in the order in which robots are assigned.
     goals
-        Number of robots per station, changed in place.
+        Number of robots of each station, which is increased in place.
     """
     while robots > 0:
         before = robots
@@ -52,17 +52,17 @@ def deal(robots: int, stations: Sequence[int], limit: int, goals: dict[int, int]
 def reassign(
     station_of: list[int], goals: dict[int, int], distance: NDArray[np.float64]
 ) -> list[int]:
-    """Move robots to stations below their goal, the nearest pair of robot and station first.
+    """Assign robots to stations below their goal, the nearest pair of robot and station first.
 
-    A robot may be moved if it has no station, or one with more robots than its goal. Ties: the
-    robot, then the station, with the lowest number.
+    A robot may be reassigned if it has no station, or if its station has more robots than its goal.
+    Ties go to the robot, then to the station, with the lowest number.
 
     Parameters
     ----------
     station_of
         Station of each of the R robots, or -1.
     goals
-        Number of robots per station; 0 for stations not listed.
+        Number of robots that each station should have; 0 for stations not listed.
     distance
         Distance between robots and all stations in any unit, shape (R, S).
 

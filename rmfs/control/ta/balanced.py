@@ -1,4 +1,4 @@
-"""TA balanced: every robot works for one station; robots are divided among stations by weight."""
+"""TA balanced: divides robots among stations by weight; each robot works for its station."""
 
 from __future__ import annotations
 
@@ -24,19 +24,20 @@ class BalancedParameters(TeamParameters):
     """Parameters of TA balanced."""
 
     pick_weight: NotNegative = 2.0
-    """Weight of pick stations when the robots are divided between the kinds of station."""
+    """Weight of pick stations when robots are divided between the kinds of station."""
     replenishment_weight: NotNegative = 1.0
-    """Weight of replenishment stations."""
+    """Weight of replenishment stations when robots are divided between the kinds of station."""
     reposition_weight: NotNegative = 0.0
-    """Weight of repositioning: robots that work for no station, and only move idle pods."""
+    """Weight of repositioning, that is, of robots that have no station and only move idle pods."""
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
     """Maximum number of robots working for one station."""
     search_all: bool = False
-    """Whether robots take work of all stations, the nearest first, and not only of their own."""
+    """Whether robots take work of all stations, the nearest first, instead of only their own."""
     other_stations: bool = False
     """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: NotNegative = 8.0
-    """Maximum distance of `other_stations` in m (Euclidean)."""
+    """With `other_stations`, maximum Euclidean distance in m from the robot to the other
+    station."""
     reposition_before_rest: bool = True
     """Whether robots without work move idle pods, if repositioning finds a move."""
 
@@ -44,19 +45,22 @@ class BalancedParameters(TeamParameters):
 class Balanced(StationTeams[BalancedParameters]):
     """Divides robots among the stations with work; by default, each works only for its station.
 
-    A robot that carries a pod continues as long as the pod can serve an open request of the robot's
-    station (or, optionally, of another one nearby), and then parks it. An empty robot gets the pod
-    that PPS chooses; if another robot without work stands beneath that pod, that robot gets the job
-    and the two exchange stations. A robot without anything to do moves an idle pod, if
-    repositioning finds one, or rests.
+    A robot continues with the pod it carries as long as the pod has work at the robot's station
+    (or, with `other_stations`, at another station nearby), and then parks the pod. A robot without
+    a pod brings the pod that PPS chooses. If another robot without work stands beneath that pod,
+    this robot brings it, and the two robots exchange their stations. A robot for which there is no
+    work moves an idle pod, if repositioning finds one, or rests.
 
-    Every `period_s`, if the set of stations with work has changed, the robots are redistributed:
-    among the kinds of station by weight times the share of stations with work, and within a kind in
-    turn, stations far from the middle of the tier first. Robots in excess of the limit go to any
-    station below it. Robots change to their new stations nearest first. If no station had work,
-    robots are redistributed as soon as there is new work. The share of robots given by the weight
-    of repositioning, rounded down, gets no station. When a robot asks for work, it does not itself
-    count towards the limit of the station.
+    Every `period_s`, if the set of stations with work has changed, the robots are redistributed.
+    The share of robots given by the weight of repositioning, rounded down, gets no station. The
+    others are divided between the two kinds of station in proportion to the kind's weight times the
+    share of its stations that have work. Within a kind, stations get one robot each in turn, those
+    far from the middle of the tier first, up to `robots_per_station`; robots left over go to
+    stations of either kind below that limit. Which robot changes to which station is decided by
+    distance, the nearest pair first. If no station had work, robots are redistributed as soon as
+    there is work.
+
+    The limit also applies when a robot takes work; the robot itself then does not count.
     """
 
     parameters_model = BalancedParameters
@@ -66,7 +70,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return frozenset(station.index for station in self.view.stations if station.has_work)
 
     def goals(self, active: frozenset[int]) -> dict[int, int]:
-        """Return the number of robots for each station, by weight."""
+        """Return the number of robots that each station should have, by weight."""
         given = self.parameters
         order = [station for station in self._far_first if station in active]
         picks, others = by_kind(self.view, order)
@@ -82,11 +86,11 @@ class Balanced(StationTeams[BalancedParameters]):
         return goals
 
     def may_work(self, robot: Robot, station: int) -> bool:
-        """Whether the station has fewer robots than its limit, without this robot."""
+        """Return whether a station has fewer robots than its limit, without counting this one."""
         return station >= 0 and self.workers(station, robot) < self.parameters.robots_per_station
 
     def stations_for(self, robot: Robot) -> Sequence[int]:
-        """Return the robot's station or, with `search_all`, all stations, the nearest first."""
+        """Return the robot's station or, with `search_all`, all stations, nearest first."""
         own = super().stations_for(robot)
         if not own or not self.parameters.search_all:
             return own
@@ -95,7 +99,10 @@ class Balanced(StationTeams[BalancedParameters]):
         return nearest_first
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Return a task at another station nearby, if allowed; PPS chooses the station."""
+        """Return a task for the carried pod at another station nearby, if allowed; else None.
+
+        PPS chooses the station.
+        """
         if not self.parameters.other_stations:
             return None
         among = [s.index for s in self.view.stations if self.may_work(robot, s.index)]
@@ -105,17 +112,17 @@ class Balanced(StationTeams[BalancedParameters]):
         return self.bring(robot, robot.pod, consult.next_station(robot, stations))
 
     def looks_elsewhere(self) -> bool:
-        """Whether robots search for work at all stations."""
+        """Return whether robots take work of all stations (`search_all`)."""
         return self.parameters.search_all
 
     def may_be_moved(self, consult: Consult) -> bool:
-        """Whether robots without work may move idle pods."""
+        """Return whether robots without work may move idle pods."""
         given = self.parameters
         moves = given.reposition_before_rest or given.reposition_weight > 0
         return moves and consult.may_move()
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Return the task of moving an idle pod, if allowed and repositioning finds a move."""
+        """Return the task of moving an idle pod, if allowed and there is a move; else None."""
         given = self.parameters
         only_moves = given.reposition_weight > 0 and self._station_of[robot.index] < 0
         if not (given.reposition_before_rest or only_moves):

@@ -1,4 +1,4 @@
-"""TA brute-force: the pair of pod and station that can be served soonest."""
+"""TA brute-force: chooses the pair of pod and station where service can begin soonest."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class BruteForceParameters(SoloParameters):
     """Parameters of TA brute-force."""
 
     queue_cost_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
-    """Expected waiting time at a station in seconds per squared number of robots at the station or
-    on their way there."""
+    """Expected wait at a station, in seconds, divided by the square of the number of robots at the
+    station or on their way there."""
 
 
 class _Job(NamedTuple):
@@ -40,19 +40,21 @@ class _Job(NamedTuple):
 
 
 class BruteForce(Solo[BruteForceParameters]):
-    """Compares every available pod, and the carried pod, at every station with work for it.
+    """Compares all pairs of a pod and a station with work for it, and chooses the quickest.
 
-    The estimated time is a sum of three: the straight path from robot to pod at top speed; the time
-    to lift the pod (and first to set down another one); and the longer of the unhindered time to
-    the station and the expected wait there. All robots together look for picks until there are
-    none, then for bundles until there are none. If the best pod is not the carried one, the carried
-    pod is parked on the way, where the drive to the place plus the straight path to the other pod
-    takes least time. Without work, pods are parked at the nearest place. Ties: the carried pod,
-    then the station, then the pod with the lowest number.
+    The pods are the available ones and the one that the robot carries, if any. The pair with the
+    least estimated time until service is chosen. The estimate is the sum of three terms: the time
+    of the straight trip from robot to pod at top speed; the time to lift the pod, and first to set
+    down a carried one; and the longer of the unhindered trip to the station and the expected wait
+    there. For the carried pod, only the last term counts. Ties go to the carried pod, then to the
+    station and the pod with the lowest number. All robots look for picks until there are none, then
+    for bundles until there are none, and so on.
 
-    The rule chooses pods and places itself, so PPS and PSA must be dummies; bundles go into the
-    pods chosen by RPS. Fetching the other pod is a prepared task; if another robot has taken the
-    pod by then, the robot searches again.
+    If the best pod is not the carried one, the carried pod is parked at the storage location with
+    the least time to drive there plus the straight trip on to the other pod. Fetching the other pod
+    is a prepared task; if another robot has taken that pod by then, the robot searches again.
+    Without work, pods are parked at the nearest empty location. The rule chooses pods and storage
+    locations itself, so PPS and PSA must be dummies; bundles go into the pods chosen by RPS.
     """
 
     parameters_model = BruteForceParameters
@@ -84,7 +86,7 @@ class BruteForce(Solo[BruteForceParameters]):
                 yield Prepare(robot, (bring(view, robot, job.pod, job.station),))
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find the best task for an empty robot; None if there is no work."""
+        """Find the best task for a robot without a pod; None if there is no work."""
         job = self._best(robot, consult)
         return None if job is None else self._bring(robot, job)
 

@@ -1,4 +1,4 @@
-"""TA constant-ratio: a fixed share of the robots works for pick stations, the rest replenish."""
+"""TA constant-ratio: a fixed share of the robots works for pick stations."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ class ConstantRatioParameters(TeamParameters):
 
 
 class ConstantRatio(StationTeams[ConstantRatioParameters]):
-    """Assigns a fixed share of the robots to pick stations, the others to replenishment stations.
+    """Assigns a fixed share of robots to pick stations, the others to replenishment stations.
 
-    Within a kind, robots are assigned to stations in turn, stations far from the middle of the tier
-    first. Only stations that are active or have work left get robots. Every `period_s`, if this set
-    of stations has changed, robots are moved, nearest first. Every robot works only for its station
-    and continues with its pod as long as the pod can serve an open request there.
+    Only stations that are active or have work left get robots. Within a kind, they get one robot
+    each in turn, those far from the middle of the tier first. Every `period_s`, if this set of
+    stations has changed, robots are reassigned, the nearest pair of robot and station first. Every
+    robot works only for its station, and continues with its pod as long as the pod has work there.
     """
 
     parameters_model = ConstantRatioParameters
 
     def first_stations(self) -> frozenset[int]:
-        """Return the stations that count; all of them if none counts yet."""
+        """Return the stations that are active or have work left; if none, all stations."""
         return self.stations_now() or super().first_stations()
 
     def stations_now(self) -> frozenset[int]:
@@ -39,7 +39,7 @@ class ConstantRatio(StationTeams[ConstantRatioParameters]):
         return found or self._active
 
     def goals(self, active: frozenset[int]) -> dict[int, int]:
-        """Return the number of robots of each given station, assigned in turn."""
+        """Return the number of robots that each of the given stations should have."""
         order = [station for station in self._far_first if station in active]
         robots = len(self.view.robots)
         picks, others = by_kind(self.view, order)

@@ -1,4 +1,4 @@
-"""TA linear: each robot does the task with the greatest weighted sum of features."""
+"""TA linear: gives each robot the task with the greatest weighted sum of features."""
 
 from __future__ import annotations
 
@@ -36,10 +36,11 @@ class LinearParameters(SoloParameters):
 class Linear(Solo[LinearParameters]):
     """Lets each robot work for a station, store its pod, move an idle pod or rest.
 
-    The task with the greatest weighted sum is chosen. PPS, PSA and repositioning choose pod and
-    place; if they find none, the next best task is chosen. If another robot without work stands
-    beneath the pod, that robot gets the task. Robots at rest get work whose sum is at least the
-    weight of `rest`. Ties: the station with the lowest number, then store, move, rest.
+    The task with the greatest weighted sum of features is chosen. PPS, PSA and repositioning choose
+    pods and storage locations; if they find none, the next best task is chosen. If another robot
+    without work stands beneath the pod, that robot gets the task. A robot at rest gets work for a
+    station only if its sum is at least the weight of `rest`. Ties go to work for the station with
+    the lowest number, then to storing, moving, and resting.
     """
 
     parameters_model = LinearParameters
@@ -60,7 +61,7 @@ class Linear(Solo[LinearParameters]):
                 return
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find the best work for a robot at rest whose sum is at least the weight of `rest`."""
+        """Find the best work for a robot at rest; None if no sum reaches the weight of `rest`."""
         for kind, station in self._best_first(robot, self.parameters.weights["rest"]):
             task = self._work(robot, station, consult) if kind == WORK else None
             if task is not None:

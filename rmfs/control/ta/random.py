@@ -1,4 +1,4 @@
-"""TA random: a random pod with work, at a random station."""
+"""TA random: gives robots random pods with work, and random stations."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ class RandomTasksParameters(SoloParameters):
     """Parameters of TA random."""
 
     rest: RestRule = "random"
-    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
-    `random`."""
+    """Where idle robots wait: at the storage location nearest to the `middle` of their tier, at the
+    `nearest` one, or at one drawn at `random`; beneath stored pods if possible."""
     switch_probability: Probability = 0.1
-    """Probability that a robot that needs a task changes from picking to replenishment, or back."""
+    """Probability that a robot that needs a task changes between picking and replenishment."""
     keep_pod_probability: Probability = 0.95
     """Probability that a robot looks for more work for the pod it carries before parking it."""
     reposition_probability: Probability = 0.05
-    """Probability that an empty robot first asks for an idle pod to move."""
+    """Probability that a robot without a pod first asks for an idle pod to move."""
     other_kind: bool = True
-    """Whether a robot takes work of the other kind if there is none of its own."""
+    """Whether a robot takes work of the other kind if there is none of its own kind."""
     prefer_same_tier: bool = True
     """Whether stations on the pod's tier come first."""
 
@@ -45,9 +45,10 @@ class RandomTasksParameters(SoloParameters):
 class RandomTasks(Solo[RandomTasksParameters]):
     """Gives each robot a random pod with work, and a random station where the pod has work.
 
-    A robot is a picker or a replenisher, initially by the share of pick stations, and changes from
-    time to time. The rule chooses pods itself, so PPS must be a dummy (whose parameters control
-    late binding); PSA chooses where pods are parked.
+    A robot works either for picking or for replenishment, and changes at random. Initially, it
+    picks with a probability equal to the share of pick stations among all stations. The rule
+    chooses pods itself, so PPS must be a dummy, whose parameters control late binding. PSA chooses
+    where pods are parked.
     """
 
     parameters_model = RandomTasksParameters

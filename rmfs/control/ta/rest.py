@@ -1,4 +1,4 @@
-"""Resting places of idle robots: beneath stored pods, so that empty places remain for pods."""
+"""Where idle robots rest: beneath stored pods, so that empty storage locations remain for pods."""
 
 from __future__ import annotations
 
@@ -18,17 +18,18 @@ RestRule = Literal["middle", "nearest", "random"]
 
 
 class RestPlaces:
-    """Places to rest beneath stored, unclaimed pods; only if there are none, empty places.
+    """Storage locations for resting: beneath unclaimed pods or, if there are none, empty ones.
 
-    An idle robot beneath a pod is not in the way: other empty robots pass beneath stored pods. If
-    the pod is needed, the robot beneath it gets the task or is sent away.
+    An idle robot beneath a pod is not in the way, since other robots without a pod pass beneath
+    stored pods. If the pod is needed, the robot beneath it gets the task or is sent away.
 
     Parameters
     ----------
     rule
-        `middle`: as near to the middle of the robot's tier as possible (paper, section 3.1.1);
-        `nearest`: the shortest distance (Euclidean; ties: the lowest waypoint), also on another
-        tier; `random`: any, on the robot's tier.
+        `middle`: the location nearest to the middle of the robot's tier (Merschformann, Xie and Li
+        2018, section 3.1.1); `nearest`: the location nearest to the robot by Euclidean distance,
+        possibly on another tier (ties go to the lowest waypoint); `random`: a location drawn from
+        those on the robot's tier.
     draw
         Function that draws an integer below its argument, for `random`.
     """
@@ -41,7 +42,7 @@ class RestPlaces:
         self._order = [_from_middle(view, tier) for tier in range(view.travel.tiers)]
 
     def choose(self, robot: Robot) -> int:
-        """Choose a place (waypoint), or -1 if there is none."""
+        """Choose a storage location (waypoint) for a robot; -1 if there is none."""
         if self._rule == "nearest":
             return self._nearest(robot)
         order = self._order[robot.tier]

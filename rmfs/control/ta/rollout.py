@@ -1,4 +1,4 @@
-"""TA rollout: the base rule's task for a robot, or one that did better in simulated trials."""
+"""TA rollout: gives a robot the base rule's task, or one that did better in simulated trials."""
 
 from __future__ import annotations
 
@@ -32,18 +32,18 @@ class TaskRolloutParameters(RolloutParameters):
     """Parameters of TA rollout."""
 
     over: Annotated[tuple[Part, ...], pydantic.Field(min_length=1)] = ("ta", "pps", "psa")
-    """Decisions that may differ from those of the base rule, PPS and PSA: the station (`ta`), the
-    pod (`pps`), the storage location (`psa`)."""
+    """Which decisions may differ from those of the base rule, PPS and PSA: the station (`ta`), the
+    pod (`pps`) or the storage location (`psa`)."""
 
 
 class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
-    """Tries out tasks by simulation: other stations, other pods, other places.
+    """Tries out tasks by simulation: other stations, other pods, other storage locations.
 
-    The base rule, with PPS and PSA, makes a default decision. The decision is compared in trials
-    with other pods for the pick station, work for other stations, or other places for the pod. The
-    best one is taken, or the default if the advantage is not certain enough (`certainty`).
-    Depending on `over`, PPS and PSA are thus decided by look-ahead as well. The pacing determines
-    the simulated time that trials cost; meanwhile no robot gets a task.
+    The base rule, with PPS and PSA, makes a default decision. It is compared in trials with others:
+    work for other stations, other pods for the pick station, or other storage locations for the
+    pod, as far as `over` allows. The decision that did best is made, or the default decision if the
+    advantage over it is not certain enough (`certainty`). The pacing determines the simulated time
+    that trials take; meanwhile, no robot gets a task.
     """
 
     parameters_model = TaskRolloutParameters
@@ -58,7 +58,7 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
         self._consult: Consult
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose the place by the base rule."""
+        """Choose a waypoint for resting by the base rule."""
         return int(self.base.rest_place(robot))
 
     def decide(self, consult: Consult) -> Iterator[Any]:
@@ -75,7 +75,7 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
                 return
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best task if it is still possible; if time has passed, continue deciding."""
+        """Yield the best task if it is still possible; if time has passed, decide further."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide(self._consult)

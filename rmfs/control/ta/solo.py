@@ -1,6 +1,6 @@
-"""Base of rules in which robots look for work by themselves.
+"""Base class of rules in which robots look for work by themselves.
 
-These are TA random, brute-force, swarm and linear.
+These are TA `random`, `brute-force`, `swarm` and `linear`.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ class SoloParameters(Parameters):
     """Parameters of rules by which robots look for work by themselves."""
 
     rest: RestRule = "nearest"
-    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
-    `random`."""
+    """Where idle robots wait: at the storage location nearest to the `middle` of their tier, at the
+    `nearest` one, or at one drawn at `random`; beneath stored pods if possible."""
 
 
 P = TypeVar("P", bound=SoloParameters)
 
 
 class Solo(TaskAllocation[P]):
-    """Finds tasks robot by robot; for robots at rest, after changes at the stations."""
+    """Finds tasks robot by robot; for robots at rest, only after changes at the stations."""
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
@@ -74,24 +74,24 @@ class Solo(TaskAllocation[P]):
                     yield found
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose the place by the rest rule; -1 if there is none."""
+        """Choose a waypoint by the parameter `rest`; -1 if there is none."""
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:
-        """Return the task of resting at the place chosen, or else where the robot is."""
+        """Return the task of resting at the waypoint chosen or, if there is none, on the spot."""
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def park(self, robot: Robot, consult: Consult) -> Iterator[Park]:
-        """Yield the task of storing a robot's pod at the place chosen by PSA, if there is one."""
+        """Yield the task of storing a robot's pod where PSA chooses, if a location is empty."""
         place = consult.place_for(robot)
         if place >= 0:
             yield Park(robot, place)
 
     def pods_for(self, robot: Robot, station: int) -> NDArray[np.intp]:
-        """Return the available pods with work at a station, ascending, shape (C,).
+        """Return the available pods with work at a station, in ascending order, shape (C,).
 
-        Queued orders do not count.
+        For pick stations, only assigned orders count, not queued ones.
         """
         target = self.view.stations[station]
         if isinstance(target, PickStation):

@@ -1,4 +1,4 @@
-"""Station teams: TA rules in which every robot works for one station at a time."""
+"""Base class of TA rules in which every robot works for one station at a time."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class TeamParameters(Parameters):
-    """Parameters of rules in which robots belong to stations."""
+    """Parameters of rules in which every robot works for one station at a time."""
 
     period_s: NotNegative = 30.0
     """Seconds between redistributions of the robots; 0: never."""
     rest: RestRule = "middle"
-    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
-    `random`."""
+    """Where idle robots wait: at the storage location nearest to the `middle` of their tier, at the
+    `nearest` one, or at one drawn at `random`; beneath stored pods if possible."""
 
 
 P = TypeVar("P", bound=TeamParameters)
@@ -42,14 +42,14 @@ P = TypeVar("P", bound=TeamParameters)
 class StationTeams(TaskAllocation[P]):
     """Assigns each robot to a station and gives it work of this station.
 
-    A robot that carries a pod continues as long as the pod can serve the robot's station, and then
-    parks it. An empty robot gets the pod that PPS chooses; if another robot without work stands
-    beneath that pod, that robot gets the task and the two exchange stations. A robot without work
-    rests, and gets work as soon as there is any.
+    A robot continues with the pod it carries as long as the pod can serve the robot's station, and
+    then parks the pod. A robot without a pod brings the pod that PPS chooses. If another robot
+    without work stands beneath that pod, this robot brings it, and the two robots exchange their
+    stations. A robot without work rests, and gets work as soon as there is any.
 
-    Every `period_s`, if the set of relevant stations has changed, the robots are redistributed:
-    robots are moved to stations below their target, the nearest pair of robot and station first. If
-    there was no relevant station, this happens as soon as there is one.
+    Every `period_s`, if the result of `stations_now` has changed, robots are reassigned to stations
+    below their goal (`goals`), the nearest pair of robot and station first. If no station should
+    have robots, this happens as soon as one should.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -83,34 +83,34 @@ class StationTeams(TaskAllocation[P]):
         return frozenset(range(len(self.view.stations)))
 
     def may_work(self, robot: Robot, station: int) -> bool:
-        """Whether a robot may get work of a station now."""
+        """Return whether a robot may get work of a station now."""
         return station >= 0
 
     def stations_for(self, robot: Robot) -> Sequence[int]:
-        """Return the stations whose work a robot may get; the first one with work is used."""
+        """Return the stations whose work a robot may get; the first station with work is used."""
         station = self._station_of[robot.index]
         return (station,) if station >= 0 else ()
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find a task at a station of another team for a carried pod; None: the pod is parked."""
+        """Find a task at another station for a carried pod; None if the pod is to be parked."""
         return None
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find a task for an empty robot for which no station has work; None: the robot rests."""
+        """Find a task for a robot for which no station has work; None if it is to rest."""
         return None
 
     def may_be_moved(self, consult: Consult) -> bool:
-        """Whether `instead_of_rest` may find a task for some robot now."""
+        """Return whether `instead_of_rest` may find a task for some robot now."""
         return True
 
     def looks_elsewhere(self) -> bool:
-        """Whether `stations_for` may return other stations than a robot's own."""
+        """Return whether `stations_for` may return other stations than a robot's own."""
         return True
 
     # --- tasks ----------------------------------------------------------------------------------
 
     def next_event_s(self) -> float:
-        """Simulated time in s of the next redistribution of the robots; inf if there is none."""
+        """Return the simulated time in s of the next redistribution; inf if there is none."""
         return self._balance_due_s
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision]:
@@ -130,7 +130,7 @@ class StationTeams(TaskAllocation[P]):
         yield from self._wake(consult)
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose the place by the rest rule; -1 if there is none."""
+        """Choose a waypoint by the parameter `rest`; -1 if there is none."""
         return self._rest.choose(robot)
 
     def _next_task(self, robot: Robot, consult: Consult) -> TaskDecision | None:
@@ -182,7 +182,7 @@ class StationTeams(TaskAllocation[P]):
         return bring(self.view, robot, pod, station)
 
     def count(self, robot: Robot, station: int) -> None:
-        """Count a robot as one that works for a station (-1: for none) from now on."""
+        """Count a robot, from now on, as working for a station (-1: for no station)."""
         former = self._works_for[robot.index]
         if former >= 0:
             self._workers[former] -= 1
@@ -191,7 +191,7 @@ class StationTeams(TaskAllocation[P]):
         self._works_for[robot.index] = station
 
     def workers(self, station: int, besides: Robot) -> int:
-        """Return the number of robots that work for a station, without the given one."""
+        """Return the number of robots that work for a station, without counting `besides`."""
         return self._workers[station] - (self._works_for[besides.index] == station)
 
     def _to_rest(self, robot: Robot) -> Rest:

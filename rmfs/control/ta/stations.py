@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 
 def waypoints(view: View) -> NDArray[np.int64]:
-    """Return the waypoints of the stations, in the common numbering, shape (S,)."""
+    """Return the waypoints of the S pick and replenishment stations, by number, shape (S,)."""
     return np.array([station.waypoint for station in view.stations])
 
 
 def by_kind(view: View, stations: Iterable[int]) -> tuple[list[int], list[int]]:
-    """Return which of the stations are pick stations, and which replenishment stations."""
+    """Divide stations into pick stations and replenishment stations."""
     picks: list[int] = []
     others: list[int] = []
     for station in stations:
@@ -49,9 +49,9 @@ def station_of_task(robot: Robot) -> int:
 
 
 def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
-    """Return the idle robot beneath a stored, available pod, or else the given robot.
+    """Return the idle robot beneath a stored, available pod; if there is none, the given robot.
 
-    A robot on its way to rest beneath the pod counts as well.
+    A robot on its way to rest beneath the pod counts as being there.
     """
     storage = view.storage
     keeper = storage.kept_by[storage.place_of[pod]]
@@ -61,9 +61,9 @@ def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
 def near_by(
     view: View, robot: Robot, radius_m: float, among: Iterable[int], consult: Consult
 ) -> list[int]:
-    """Return the stations that a robot's pod can serve, on its tier and within a radius.
+    """Return the stations that a robot's pod can serve on its tier, within a radius in m.
 
-    Distances are Euclidean.
+    Distances from the robot are Euclidean.
     """
     stations = [view.stations[index] for index in among]
     if not stations:
@@ -80,7 +80,7 @@ def near_by(
 
 
 def far_first(view: View) -> list[int]:
-    """Return the stations, the farthest from the middle of their tier first, ties by number."""
+    """Return all stations, those farthest from the middle of their tier first, then by number."""
     layout, at = view.layout, waypoints(view)
     tiers = [layout.tiers[tier] for tier in layout.tier[at].tolist()]
     x = layout.x_m[at] - np.array([tier.length_m / 2 for tier in tiers])

@@ -1,4 +1,4 @@
-"""TA swarm: stations attract robots, depending on their work and distance."""
+"""TA swarm: stations attract robots according to their work and distance."""
 
 from __future__ import annotations
 
@@ -33,34 +33,40 @@ class SwarmParameters(SoloParameters):
     """Parameters of TA swarm."""
 
     work_limit: Annotated[int, pydantic.Field(ge=1)] = 6
-    """Maximum number of orders, or bundles, of a station that count, and of robots it attracts."""
+    """Maximum number of orders or bundles of a station that count, and thus of the robots that it
+    attracts."""
     threshold_weight: NotNegative = 1.0
-    """Weight (alpha) of the square of half `work_limit`: how hard it is to attract any robot."""
+    """Weight (alpha) of the square of half `work_limit`: the higher it is, the more stimulus is
+    needed to attract robots at any distance."""
     distance_weight: NotNegative = 1.0
     """Weight (beta) of the squared Manhattan distance in m."""
     growth: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 1.2
-    """Factor by which a station's attraction grows each time another station is chosen."""
+    """Factor by which the multiplier of a station's stimulus grows each time another station is
+    drawn."""
     growth_limit: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 30.0
-    """Maximum of the factor to which attraction can grow."""
+    """Maximum of the multiplier of a station's stimulus."""
     rest_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """Share of stations without stimulus above which a robot may also draw rest."""
+    """Share of stations without stimulus above which robots may also draw rest."""
     other_stations: bool = False
     """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: NotNegative = 5.0
-    """Maximum distance of `other_stations` in m (Euclidean)."""
+    """With `other_stations`, maximum Euclidean distance in m from the robot to the other
+    station."""
 
 
 class Swarm(Solo[SwarmParameters]):
-    """Lets each empty robot draw a station, and PPS choose a pod for it.
+    """Lets each robot without a pod draw a station, for which PPS chooses a pod.
 
-    A station's stimulus is s = max(min(n, limit) - m, 0) times a multiplier, where n is the number
-    of orders or bundles there, and m the number of robots matched with it. The station is drawn
-    with a probability proportional to s^2 / (s^2 + alpha T^2 + beta d^2), where T is half the
-    limit, rounded down, and d the distance. The multiplier of the drawn station becomes 1, and so
-    do those of stations without stimulus; the others grow. Let S be the number of stations and R
-    the rest share times S, rounded. If the number of stations without stimulus exceeds R by e, rest
-    can be drawn as well, with the weight e^3 / (S - R)^3; multipliers then do not grow. A robot
-    stays matched with its station as long as it carries a pod.
+    A station's stimulus s is max(min(n, `work_limit`) - m, 0) times the station's multiplier. Here
+    n is the number of orders or bundles at the station, and m the number of robots matched with it.
+    A station is drawn with a probability proportional to s^2 / (s^2 + alpha T^2 + beta d^2), where
+    T is half of `work_limit`, rounded down, and d the Manhattan distance in m. Then the multipliers
+    of the drawn station and of stations without stimulus are set to 1, and the others grow.
+
+    Let S be the number of stations, and R be `rest_share` times S, rounded. If the number of
+    stations without stimulus exceeds R by e, a robot can also draw rest, with the weight
+    e^3 / (S - R)^3. If rest is drawn, no multiplier grows. A robot is matched with the station that
+    it has drawn as long as it carries a pod.
     """
 
     parameters_model = SwarmParameters
@@ -84,7 +90,7 @@ class Swarm(Solo[SwarmParameters]):
             yield from self.park(robot, consult)
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Draw a station and ask PPS for a pod; None for rest, or if there is no pod."""
+        """Draw a station and ask PPS for a pod; None if rest is drawn, or there is no pod."""
         self._matched[robot.index] = -1
         station = self._draw_station(robot)
         if station < 0 or not self.view.has_open_work(station):

@@ -12,10 +12,11 @@ if TYPE_CHECKING:
 
 
 class Tracker:
-    """Base class of trackers: counts something over a run, reads the view and changes nothing.
+    """Base class of trackers, which count something over a run.
 
-    A tracker starts from the state of the world when a controller first requests it, and exists
-    until the end of the run, so that it is up to date for a controller installed later.
+    A tracker reads the view and changes nothing. It starts from the state of the world when a
+    controller first requests it, and exists until the end of the run, so that it is up to date for
+    a controller installed later.
 
     Attributes
     ----------
@@ -36,7 +37,7 @@ T = TypeVar("T", bound=Tracker)
 
 
 class Trackers:
-    """The trackers of a run: one for each combination of class and settings, made on request."""
+    """The trackers of a run, made on request: one for each combination of class and settings."""
 
     def __init__(self, view: View) -> None:
         self._view = view
@@ -46,17 +47,17 @@ class Trackers:
         return iter(self._made.values())
 
     def get(self, kind: type[T], *settings: Hashable) -> T:
-        """Return a tracker, which is created if necessary.
+        """Return a tracker, creating it if necessary.
 
-        Controllers and trackers must first call this at construction; a tracker created later would
-        not be notified of events before the next exchange of a controller.
+        Controllers and trackers must request their trackers in their constructor. A tracker created
+        later would not be notified of events before the next exchange of a controller.
 
         Parameters
         ----------
         kind
             Class of the tracker.
         settings
-            Arguments of its constructor, after the view.
+            Arguments of the constructor after the view.
         """
         key = (kind, settings)
         if key not in self._made:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Frequency(Tracker):
-    """Units ordered of each SKU, in past orders and since time zero."""
+    """Number of units ordered of each SKU, in past orders and since time zero."""
 
     def __init__(self, view: View) -> None:
         super().__init__(view)
@@ -30,12 +30,12 @@ class Frequency(Tracker):
 
     @property
     def units(self) -> NDArray[np.int64]:
-        """Units ordered of each SKU, shape (K,)."""
+        """Number of units ordered of each of the K SKUs, shape (K,)."""
         return self._before + self.view.inventory.ordered
 
     @property
     def share(self) -> NDArray[np.float64]:
-        """Units ordered of each SKU, relative to the most ordered SKU, shape (K,)."""
+        """Units ordered of each SKU, divided by those of the most ordered SKU, shape (K,)."""
         units = self.units
         return units / max(int(units.max()), 1)
 
@@ -43,7 +43,7 @@ class Frequency(Tracker):
 class PairFrequency(Tracker):
     """For each pair of SKUs, the number of orders that contain both.
 
-    Counted are past orders, the backlog when the tracker starts, and orders that arrive afterwards.
+    It counts past orders, the backlog when the tracker starts, and orders that arrive afterwards.
     """
 
     hears = frozenset({Trigger.NEW_ORDER})
@@ -61,9 +61,10 @@ class PairFrequency(Tracker):
         self._count(line.sku for line in subject.lines)
 
     def orders_with(self, sku: int) -> NDArray[np.int64]:
-        """Return for each SKU the number of orders with it and the given one, shape (K + 1,).
+        """Return, for each SKU, how many orders contain both it and the given SKU, shape (K + 1,).
 
-        The last entry is 0, for the padding of `Inventory.skus_on`.
+        The last entry is 0; it belongs to the number K that fills up the rows of
+        `Inventory.skus_on`.
         """
         counts = np.zeros(len(self.view.skus) + 1, np.int64)
         partners = self._orders.get(sku)

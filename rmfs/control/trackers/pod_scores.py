@@ -1,4 +1,4 @@
-"""Scores of pods, by the demand for their contents and their popularity."""
+"""Scores of pods by the demand for their contents and by the popularity of their SKUs."""
 
 from __future__ import annotations
 
@@ -15,13 +15,15 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 Demand = Literal["assigned", "unbound", "wanted"]
-"""Units that count as demand: open ones at stations; all open ones; all not yet picked."""
+"""Which units are demand: units that orders at stations need and that are not bound to a pod
+(`assigned`); also those of orders in the backlog (`unbound`); or all units not yet picked
+(`wanted`)."""
 
 _STEPS = 1 << 20  # popularity is counted in integers, so that sums never drift
 
 
 def demand(view: View, kind: Demand) -> NDArray[np.int64]:
-    """Return the number of units of each SKU in demand, shape (K,)."""
+    """Return the number of units in demand of each SKU, shape (K,)."""
     if kind == "wanted":
         return view.inventory.wanted
     units: NDArray[np.int64] = view.need.sum(axis=0, dtype=np.int64)
@@ -34,8 +36,8 @@ def demand(view: View, kind: Demand) -> NDArray[np.int64]:
 class DemandOnPods(Tracker):
     """For each pod, the sum over SKUs of its units, limited by the demand for the SKU.
 
-    Changes of stock are counted as they happen, changes of demand when the sums are requested; then
-    only SKUs whose demand has changed are processed.
+    Changes of stock are counted as they happen. Changes of demand are counted when the sums are
+    requested; only SKUs whose demand has changed are processed then.
     """
 
     hears = frozenset({Trigger.UNIT_PICKED, Trigger.BUNDLE_STORED})
@@ -72,11 +74,11 @@ class DemandOnPods(Tracker):
 
 
 class PodScores(Tracker):
-    """Scores of pods: how useful they are now, and how fast they will be needed again.
+    """Scores of pods: how useful they are now, and how soon they will be needed again.
 
-    *Utility* is the number of units on a pod that are in demand (`DemandOnPods` of all units not
-    yet picked); *speed* is the sum over its units of the popularity of their SKU. Both are relative
-    to the best pod. They are kept up to date from the first request on.
+    *Utility* is the number of units on a pod that are in demand, where demand is all units not yet
+    picked (`DemandOnPods`). *Speed* is the sum, over the units on a pod, of the popularity of their
+    SKU. Both are divided by their maximum over all pods.
     """
 
     hears = DemandOnPods.hears

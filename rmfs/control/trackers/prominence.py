@@ -1,4 +1,4 @@
-"""Prominence of storage places, by the time from there to a pick station."""
+"""Prominence of storage locations, by the travel time from there to a pick station."""
 
 from __future__ import annotations
 
@@ -15,18 +15,19 @@ if TYPE_CHECKING:
 
 
 class Prominence(Tracker):
-    """Places ranked by the time that a loaded robot needs to the nearest pick station.
+    """Storage locations ranked by a loaded robot's travel time to the nearest pick station.
 
-    Equal times share a rank; ranks are counted from 0, the most prominent, without gaps.
+    Locations with equal times share a rank. Ranks are counted without gaps from 0, the most
+    prominent.
 
     Attributes
     ----------
     seconds
-        Time in s from each of the L storage places to its nearest pick station, shape (L,).
+        Time in s from each of the L storage locations to its nearest pick station, shape (L,).
     rank
-        Rank of each place, shape (L,).
+        Rank of each location, shape (L,).
     in_order
-        Places by index, the most prominent first, ties by index, shape (L,).
+        Indices of the locations, the most prominent first; ties are in order of index, shape (L,).
     """
 
     def __init__(self, view: View) -> None:

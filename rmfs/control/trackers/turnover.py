@@ -1,4 +1,4 @@
-"""Turnover classes, which group places near pick stations with fast-moving pods and SKUs."""
+"""Turnover classes, which match fast-moving pods and SKUs with locations near pick stations."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 
 class TurnoverParameters(Parameters):
-    """Parameters of turnover classes, which rules that work together (RPS, PSA) must share."""
+    """Parameters of turnover classes; they must be equal in rules that work together (RPS, PSA)."""
 
     class_borders: Annotated[tuple[float, ...], pydantic.Field(min_length=1)] = (0.1, 0.3, 1.0)
-    """Cumulative shares of the storage locations at which classes end, nearest first; the last
-    is 1."""
+    """Shares of the storage locations, nearest to pick stations first, at which each class ends.
+    They are cumulative; the last is 1."""
     place_metric: Metric = "time"
-    """Measure of the distance from a place to its nearest pick station."""
+    """Measure of the distance from a storage location to its nearest pick station."""
     reallocation_period_s: Annotated[float, pydantic.Field(ge=0)] = 0.0
-    """Seconds after which pods and SKUs are reclassified; 0: never."""
+    """Time, in seconds, after which pods and SKUs are reclassified; 0: never."""
     reallocation_orders: Annotated[int, pydantic.Field(ge=0)] = 0
     """Number of new orders after which pods and SKUs are reclassified; 0: never."""
 
@@ -41,34 +41,35 @@ class TurnoverParameters(Parameters):
 
     @classmethod
     def of(cls, parameters: TurnoverParameters) -> TurnoverParameters:
-        """Extract these parameters from those of a rule."""
+        """Return the parameters of turnover classes from those of a rule."""
         names = TurnoverParameters.model_fields
         return TurnoverParameters(**{name: getattr(parameters, name) for name in names})
 
 
 class TurnoverClasses(Tracker):
-    """Classes of storage places, pods and SKUs, from 0, the fastest, to `classes` - 1.
+    """Classes of storage locations, pods and SKUs, from 0, the fastest, to `classes` - 1.
 
-    - Places are sorted by distance to the nearest pick station and divided at the class borders;
-      the number of places up to a border is rounded down.
+    - Storage locations are sorted by distance to the nearest pick station and divided at the class
+      borders; the number of locations up to a border is rounded down.
     - Pods are sorted by the mean number of units ordered of the SKUs they contain, the fastest
-      first, ties by distance to the nearest pick station and then by number; they are divided in
-      proportion to the places of the classes.
-    - SKUs are sorted by units ordered, the most first, ties by number. A SKU weighs the mean of two
-      shares: its share of the units ordered, and the share of its unit space in the sum of the unit
-      spaces of all SKUs. A class takes SKUs until their total weight reaches its share of the pods'
-      capacity.
+      first. Ties are broken by distance to the nearest pick station, then by number. The pods are
+      divided in proportion to the numbers of locations of the classes.
+    - SKUs are sorted by units ordered, the most first; ties are broken by number. The weight of a
+      SKU is the mean of two shares: its share of all units ordered, and the share of its space per
+      unit in the sum of the spaces per unit of all SKUs. A class takes SKUs until their total
+      weight reaches the share of the pods' capacity that its pods have.
 
-    Units are counted since the last classification, at first including past orders. Pods and SKUs
-    are classified when a rule first requests the tracker, and again on the first access after the
-    period, or the number of orders, has been reached; places keep their class.
+    Units are counted since the last classification; the first one also counts past orders. Pods and
+    SKUs are classified when a rule first requests the tracker. They are reclassified on the first
+    access after the period has passed, or the number of orders has been reached. Locations keep
+    their class.
 
     Attributes
     ----------
     classes
         Number of classes.
     place_class
-        Class of each of the L storage places, shape (L,).
+        Class of each of the L storage locations, shape (L,).
     """
 
     def __init__(self, view: View, parameters: TurnoverParameters) -> None:

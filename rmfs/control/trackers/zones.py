@@ -17,44 +17,46 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 ZonePriority = Literal["drop-off", "cache", "equal"]
-"""Which zones choose their places first."""
+"""Which kind of zone chooses its storage locations first."""
 
 
 class ZoneParameters(Parameters):
-    """Parameters of zones, which rules that work together (PSA, repositioning) must share."""
+    """Parameters of zones; they must be equal in rules that work together (PSA, repositioning)."""
 
     cache_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.25
     """Share of all storage locations used for caches, divided equally among the pick stations."""
     drop_off_places: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Number of places in the drop-off zone of each pick station."""
+    """Number of storage locations in the drop-off zone of each pick station."""
     zone_priority: ZonePriority = "drop-off"
-    """Which zones choose their places first: `drop-off`, `cache`, or neither (`equal`)."""
+    """Which kind of zone chooses its storage locations first: `drop-off`, `cache`, or neither
+    (`equal`)."""
 
     @classmethod
     def of(cls, parameters: ZoneParameters) -> ZoneParameters:
-        """Extract these parameters from those of a rule."""
+        """Return the parameters of zones from those of a rule."""
         names = ZoneParameters.model_fields
         return ZoneParameters(**{name: getattr(parameters, name) for name in names})
 
 
 class Zones(Tracker):
-    """The zone to which every storage place belongs.
+    """The zone, if any, to which each of the L storage locations (places) belongs.
 
-    A cache has ceil(cache share x places / pick stations) places, a drop-off zone the given number.
+    A cache has ceil(`cache_share` x L / pick stations) places, a drop-off zone `drop_off_places`.
     Places are assigned one after another. Of all pairs of an unassigned place and a zone that is
-    not full, the next is chosen by priority of the kind of zone; then by the least time of a loaded
-    robot (from a place in the cache to the station, or from the station to a place in the drop-off
-    zone); then by the longest time in the other direction. Ties: the place, then the station, with
-    the lowest number, and the drop-off zone before the cache.
+    not full, the next pair is the one with the highest priority of the kind of zone; then with the
+    least travel time of a loaded robot (from a place in a cache to the station, or from the station
+    to a place in a drop-off zone); then with the longest time in the other direction. Ties go to
+    the place with the lowest number, then to drop-off zones, then to the station with the lowest
+    number.
 
     Attributes
     ----------
     cache_of, drop_off_of
         Pick station to whose cache, or drop-off zone, each place belongs, or -1, shape (L,).
     cache_size
-        Number of places of each cache, shape (S,); less than specified if there are not enough.
+        Number of places of each cache, shape (S,); less than specified if there are too few.
     caches
-        Indices of the places of each cache, by station.
+        For each pick station, the indices of the places of its cache.
     """
 
     def __init__(self, view: View, parameters: ZoneParameters) -> None:
@@ -73,7 +75,7 @@ class Zones(Tracker):
         self._cache_mask: NDArray[np.bool_] = self.cache_of >= 0
 
     def occupied(self) -> NDArray[np.int64]:
-        """Return the number of places of each cache with a pod or kept by a robot, shape (S,)."""
+        """Return, for each cache, how many places hold a pod or are kept by a robot, shape (S,)."""
         taken = self._cache_mask & ~self.view.storage.is_empty
         return np.bincount(self.cache_of[taken], minlength=len(self.cache_size))
 

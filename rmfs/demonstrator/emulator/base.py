@@ -24,9 +24,9 @@ class EmulatedBase:
     Attributes
     ----------
     x_m, y_m, heading_rad
-        Its true position and heading.
+        True position in m, and heading in rad: 0 along x, positive anticlockwise.
     speed_factor
-        Ratio of the actual to the commanded speed of its wheels.
+        Ratio of the actual to the commanded speed of the wheels.
     slip
         Largest share of a wheel's travel that may be lost to slip.
     rng
@@ -61,7 +61,7 @@ class EmulatedBase:
         return len(data)
 
     def read(self, size: int) -> bytes:
-        """Return up to `size` bytes of answers."""
+        """Return up to `size` bytes of the answers to commands."""
         answer, self._outbox = self._outbox[:size], self._outbox[size:]
         return answer
 
@@ -102,11 +102,11 @@ class EmulatedBase:
     # --- floor ---------------------------------------------------------------------------------
 
     def stop(self) -> None:
-        """Stop, as the guard does when the robot's program dies."""
+        """Stop the wheels, as the guard does when the robot's program dies."""
         self._wanted_left = self._wanted_right = 0.0
 
     def roll(self, seconds: float) -> None:
-        """Advance the motion of the wheels by some time."""
+        """Simulate the motion of the wheels and the base for some seconds."""
         if self.battery <= 0:
             self.stop()
         change = WHEEL_ACCELERATION_M_S2 * seconds

@@ -1,4 +1,4 @@
-"""The floor: tape along the edges of a layout, as a camera sees it."""
+"""The floor, with tape along the edges of a layout, as a camera sees it."""
 
 from __future__ import annotations
 
@@ -20,20 +20,21 @@ MARGIN_M = 0.5
 _FLOOR, _TAPE = 170, 35
 
 NEAR_M, DEEP_M, WIDE_M = 0.17, 0.12, 0.24
-"""Field of view of a camera: distance ahead of the robot's centre, depth and width, in m."""
+"""Field of view of a camera, in m: distance of its near edge ahead of the robot's centre, depth,
+and width."""
 IMAGE = (64, 32)
 """Width and height of an image, in pixels."""
 
 
 class Floor:
-    """A picture of the floor, and views of it.
+    """A picture of the floor, and the views that cameras have of it.
 
     Parameters
     ----------
     layout
-        The layout; tape lies along every edge.
+        The warehouse; tape lies along every edge.
     unkindness
-        Imperfections; those used are glare, noise and gaps.
+        Imperfections of the room, of which glare, noise and gaps concern the floor.
     rng
         Random stream for the imperfections of the floor.
     """

@@ -24,14 +24,14 @@ class Pace(Protocol):
         """Wait until the first tick may begin."""
 
     def tick(self, room: Room) -> bool:
-        """Wait for the end of the present tick; return whether another one follows."""
+        """Wait for the end of the present tick; return whether another tick follows."""
 
     def close(self) -> None:
         """End the connection, if there is one."""
 
 
 class RealTime:
-    """A tick takes its nominal time; the server has its own clock."""
+    """Timing by the wall clock: a tick takes its nominal time; the server has its own clock."""
 
     def __init__(self) -> None:
         self.has_ended = False
@@ -50,7 +50,7 @@ class RealTime:
 
 
 class InStep:
-    """The room keeps the clock, and the server processes each tick in step with it.
+    """Synchronous timing: the room keeps the clock and waits until the server processed a tick.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ class InStep:
     def tick(self, room: Room) -> bool:
         """Send the time to the server, and wait until it has processed the tick.
 
-        Without a connection, time goes on at real speed. The result is false if the server ends the
+        Without a connection, time advances by the wall clock. Return false if the server ends the
         demonstration instead of processing the tick.
         """
         if not self._link.is_up:

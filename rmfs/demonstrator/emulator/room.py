@@ -35,7 +35,7 @@ _PARTS = 2  # physics steps in a tick
 
 @dataclass
 class Address:
-    """The address of the server, and the secret."""
+    """The address of the server, and the secret that robots share with it."""
 
     host: str
     port: int
@@ -71,7 +71,7 @@ class EmulatedRobot:
         self.base.stop()
 
     def step(self, now_us: int) -> None:
-        """Write frames that are due, and run one step of the program, if it is running."""
+        """Write the frames that are due and, if the program is running, do one of its steps."""
         if self.wire is not None:
             self.wire.now_us = now_us
             self.wire.pump()
@@ -102,7 +102,7 @@ class Room:
     seed
         Seed of all random draws.
     memory
-        Folder in which programs save their orders. Default: a temporary one.
+        Folder in which the programs save their orders. Default: a temporary folder.
     pace
         Timing of the room. Default: synchronised with the server.
 
@@ -146,9 +146,9 @@ class Room:
         Parameters
         ----------
         until_us
-            End time, if the server does not end the demonstration earlier.
+            Time, in microseconds, at which the run ends unless the server ends it earlier.
         each
-            Function called once per tick, such as to cause failures.
+            Function called once per tick, for example to cause failures.
         """
         if self.now_us == 0:
             self._pace.begin()
@@ -177,12 +177,12 @@ class Room:
     # --- what goes over the wires -------------------------------------------------------------
 
     def sent(self) -> dict[str, int]:
-        """Return the number of bytes that each connected robot has sent."""
+        """Return the number of bytes that each connected robot has sent, by its name."""
         wires = {name: robot.wire for name, robot in self.robots.items()}
         return {name: wire.written for name, wire in wires.items() if wire and not wire.is_closed}
 
     def fetch(self, sizes: dict[str, int]) -> None:
-        """Wait until robots have received given numbers of bytes, or nothing arrives for 0.5 s."""
+        """Wait until robots have received given numbers of bytes, or nothing arrived for 0.5 s."""
         for name, size in sizes.items():
             wire = self.robots[name].wire if name in self.robots else None
             if wire is not None:

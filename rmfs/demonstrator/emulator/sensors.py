@@ -18,7 +18,7 @@ REACH_M = 0.02
 
 @dataclass(frozen=True)
 class FloorCamera:
-    """An emulated camera above the floor."""
+    """An emulated camera that a robot carries above the floor."""
 
     floor: Floor
     base: EmulatedBase
@@ -30,16 +30,16 @@ class FloorCamera:
 
 
 class FloorTags:
-    """An emulated tag reader above the floor.
+    """An emulated tag reader that a robot carries above the floor.
 
     Parameters
     ----------
     tags, x_m, y_m
-        The tags and their positions, shape (N,).
+        The N tags and their positions in m, shape (N,).
     base
         The base of the robot that carries the reader.
     missed
-        Share of passages in which the tag is missed.
+        Share of passages over a tag in which the tag is missed.
     rng
         Random stream that draws the missed passages.
     """
@@ -73,6 +73,6 @@ class FloorTags:
         self._above = above
 
     def read(self) -> str | None:
-        """Return a tag detected since the previous call, or None."""
+        """Return the tag detected since the previous call; None if there is none."""
         found, self._found = self._found, None
         return found

@@ -25,14 +25,14 @@ class Truth:
     Attributes
     ----------
     lines_x_m, lines_y_m
-        Positions of the lines along y, and of those along x.
+        x positions of the lines along y, and y positions of the lines along x.
     nearest_m
-        Smallest distance so far between the centres of two robots; between two measurements robots
-        are assumed to move in a straight line.
+        Smallest distance so far between the centres of two robots, which are assumed to move in a
+        straight line between two measurements.
     driven_m
         Total distance driven by all robots.
     lateral_mean_m, lateral_max_m
-        Mean and maximum distance of driving robots from the nearest line in their direction.
+        Mean and maximum distance of driving robots from the nearest line along their direction.
     """
 
     lines_x_m: list[float]
@@ -51,7 +51,7 @@ class Truth:
 
     @property
     def lateral_mean_m(self) -> float:
-        """Mean distance of driving robots from the nearest line in their direction."""
+        """Mean distance of driving robots from the nearest line along their direction."""
         return self._lateral_sum / self._looks if self._looks else 0.0
 
     def look(self, bases: Sequence[EmulatedBase], seconds: float) -> None:

@@ -7,22 +7,22 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Unkindness:
-    """Imperfections, and how often they occur.
+    """Imperfections of an emulated room: how often they occur, and how large they are.
 
     Attributes
     ----------
     speed_error
-        Maximum relative error of the speed of a robot's wheels, constant over time.
+        Maximum relative error of the speed of a robot's wheels; the error is constant over time.
     slip
-        Maximum share of a wheel's travel lost to slip, drawn at each step.
+        Maximum share of a wheel's travel that is lost to slip; the share is drawn at each step.
     missed_tags
-        Share of passages in which the reader misses the tag.
+        Share of passages over a tag in which the reader misses the tag.
     lost_messages
-        Share of frames lost in each direction.
+        Share of frames that are lost, in each direction.
     delay_us
-        Maximum delay of a frame.
+        Maximum delay of a frame in microseconds.
     glare, noise
-        Share of images with a bright spot; standard deviation of the noise in grey values.
+        Share of images with a bright spot, and standard deviation of the noise in grey values.
     gap_m
         Length of a gap in the tape in the middle of every third edge.
     """

@@ -17,7 +17,7 @@ _HEAD = 36  # bytes of a frame before its text
 
 
 class UnkindWire:
-    """A TCP connection that loses and delays whole frames, except the first of each side.
+    """A TCP connection that loses and delays whole frames, except the first frame of each side.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class UnkindWire:
     Attributes
     ----------
     now_us
-        Present time; set by the room.
+        Present time in microseconds, which the room sets.
     written, received
         Number of bytes written to and received from the connection.
     """

@@ -1,4 +1,7 @@
-"""The program of a real robot: `python -m rmfs.demonstrator.robot`; `python -m robot` in a copy."""
+"""The program of a real robot: `python -m rmfs.demonstrator.robot`.
+
+If this folder has been copied to the robot, the command is `python -m robot`.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from .tags import SerialTagReader
 STEP_S = 0.05
 BAUD, TAG_BAUD = 115_200, 9_600
 ANSWER_S = 0.1
-"""Maximum time in s for an answer of the base."""
+"""Maximum time, in s, to wait for an answer of the base."""
 
 _log = logging.getLogger("rmfs.robot")
 
@@ -71,7 +74,7 @@ def drive(options: argparse.Namespace, camera: Camera, alive: Callable[[], None]
 
 
 def stop(base: str) -> None:
-    """Stop the motors, whatever state the base is in; log an error if its port fails."""
+    """Stop the motors, whatever the state of the base; log an error if its port fails."""
     try:
         with serial.Serial(base, BAUD, timeout=ANSWER_S) as port:
             create = Create2(port)

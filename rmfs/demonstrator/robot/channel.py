@@ -1,4 +1,4 @@
-"""A session in which every message arrives exactly once and in order despite losses.
+"""A session in which every message arrives exactly once and in order, despite losses.
 
 Both sides number their messages and acknowledge the last number received. A message that is not
 acknowledged in time is sent again, with all later ones. This module reads neither clock nor socket;
@@ -6,7 +6,7 @@ the caller passes time and bytes.
 
     message := {"n": number or absent, "ack": number, "clock": microseconds, "type": name, ...}
 
-A message without a number only acknowledges and shows that the sender is alive.
+A message without a number only acknowledges others and shows that the sender is alive.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from collections import deque
 from .protocol import Message, ProtocolError, Unpacker, pack, whole
 
 RESEND_US = 300_000
-"""Time after which an unacknowledged message is sent again."""
+"""Time, in microseconds, after which an unacknowledged message is sent again."""
 HEARTBEAT_US = 500_000
-"""Interval at which each side shows that it is alive."""
+"""Interval, in microseconds, at which each side shows that it is alive."""
 SILENCE_US = 3_000_000
-"""Time without a message after which the other side counts as silent."""
+"""Time, in microseconds, without a message after which the other side counts as silent."""
 MOST_WAITING = 10_000
-"""Maximum number of unacknowledged messages; more indicate a defect of the other side."""
+"""Maximum number of unacknowledged messages; a greater number indicates a defective other side."""
 
 
 class Channel:
@@ -31,11 +31,11 @@ class Channel:
     Parameters
     ----------
     key, own, other
-        Key of the session, and the labels of frames that this side writes and reads.
+        Key of the session, and the labels of the frames that this side writes and reads.
     now_us
         Present time in microseconds.
     rest
-        Bytes that have arrived already.
+        Bytes of the session that have arrived already.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Channel:
         self._sent_us = self.heard_us = self.clock_us = now_us
 
     def send(self, message: Message) -> None:
-        """Queue a message; a ProtocolError if `MOST_WAITING` are unacknowledged."""
+        """Queue a message; raise ProtocolError if `MOST_WAITING` messages are unacknowledged."""
         if len(self._waiting) >= MOST_WAITING:
             raise ProtocolError(f"{MOST_WAITING} messages without acknowledgement")
         self._number += 1
@@ -95,5 +95,5 @@ class Channel:
         return [pack({**message, **stamp}, self._key, self._own) for message in due]
 
     def is_silent(self, now_us: int) -> bool:
-        """Return whether the other side has been silent for too long."""
+        """Return whether the other side has been silent for longer than `SILENCE_US`."""
         return now_us - self.heard_us > SILENCE_US

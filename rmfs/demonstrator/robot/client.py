@@ -30,7 +30,7 @@ from .channel import SILENCE_US, Channel
 from .protocol import Message, ProtocolError, Unpacker
 
 RETRY_US = 1_000_000
-"""Time after a failure until the robot tries to connect again."""
+"""Time, in microseconds, after a failure until the robot tries to connect again."""
 
 _log = logging.getLogger("rmfs.robot")
 
@@ -136,14 +136,14 @@ class Link:
             return []
 
     def send(self, message: Message) -> bool:
-        """Queue a message for the server; false if there is no session and the message is lost."""
+        """Queue a message for the server; return false if, without a session, it is lost."""
         if self._channel is None:
             return False
         self._channel.send(message)
         return True
 
     def flush(self, now_us: int) -> None:
-        """Write the frames that are due."""
+        """Write the frames that are due to be sent."""
         if self._channel is not None and self._wire is not None:
             for frame in self._channel.outgoing(now_us):
                 self._wire.write(frame)

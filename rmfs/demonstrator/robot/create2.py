@@ -9,7 +9,8 @@ from typing import NamedTuple, Protocol
 TRACK_M = 0.235
 """Distance between the wheels, in m."""
 METRES_PER_COUNT = math.pi * 0.072 / 508.8
-"""Distance per count: a wheel of 72 mm diameter turns once in 508.8 counts."""
+"""Distance per count of a wheel's counter, in m: a wheel of 72 mm diameter turns once in 508.8
+counts."""
 FASTEST_MM_S = 500
 
 _START, _SAFE, _STOP, _DRIVE_DIRECT, _QUERY_LIST = 128, 131, 173, 145, 149
@@ -29,17 +30,17 @@ class SerialPort(Protocol):
 
 
 class BaseError(Exception):
-    """The base does not answer."""
+    """Raised if the base does not answer."""
 
 
 class Counts(NamedTuple):
-    """The counters of the wheels, of 16 bits, which overflow after 29 m."""
+    """The 16-bit counters of the left and the right wheel, which overflow after 29 m."""
 
     left: int
     right: int
 
     def rolled_m(self, since: Counts) -> tuple[float, float]:
-        """Return how far the left and the right wheel have rolled since a reading, in m."""
+        """Return how far, in m, the left and the right wheel have rolled since another reading."""
         return _metres(self.left, since.left), _metres(self.right, since.right)
 
 
@@ -84,7 +85,7 @@ class Create2:
         return Counts(*self._ask(_COUNTS))
 
     def charge(self) -> float:
-        """Return the charge level of the battery, as a share.
+        """Return the charge level of the battery, as a share of its capacity.
 
         Raises
         ------

@@ -15,7 +15,7 @@ import traceback
 from collections.abc import Callable
 
 PATIENCE_S = 0.5
-"""Maximum time of a step, in s; at 0.21 m/s the robot drives 10 cm in that time."""
+"""Maximum time of a step of the program, in s; at 0.21 m/s, the robot drives 10 cm in it."""
 
 
 def guarded(
@@ -23,7 +23,7 @@ def guarded(
     stop: Callable[[], None],
     patience_s: float = PATIENCE_S,
 ) -> int:
-    """Run a program, and stop the robot when it ends for whatever reason.
+    """Run a program, and stop the robot when the program ends for whatever reason.
 
     Parameters
     ----------
@@ -32,7 +32,8 @@ def guarded(
     stop
         Function that stops the robot, called when the program has ended.
     patience_s
-        Time without a step after which the program is killed, in s, from its first step on.
+        After the first step of the program, the time in s without a further step after which it is
+        killed.
 
     Returns
     -------

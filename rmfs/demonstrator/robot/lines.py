@@ -20,11 +20,14 @@ class Camera(Protocol):
     """A camera that sees the floor in front of the robot."""
 
     def frame(self) -> NDArray[np.uint8]:
-        """Return an image, shape (height, width, 3), in blue, green, red; the robot is below it."""
+        """Return an image, shape (height, width, 3), in blue, green, red.
+
+        The robot is below the lower edge.
+        """
 
 
 class VideoCamera:
-    """A camera that OpenCV opens by its number.
+    """A camera, opened by its number in OpenCV.
 
     Raises
     ------
@@ -59,10 +62,11 @@ class LineSettings:
     smallest_share
         Smallest area of a contour, as a share of the image.
     widest_share
-        Largest width of the lower end, as a share of the image's width; a wider one is a crossing
-        line.
+        Largest width of the lower end, as a share of the image's width. A wider contour is a line
+        that crosses the robot's line.
     lower_share
-        The line must reach into this lower share of the image.
+        Height of the lower part of the image into which the line must reach, as a share of the
+        image.
     """
 
     lowest: tuple[int, int, int] = (0, 0, 0)
@@ -74,7 +78,7 @@ class LineSettings:
 
 
 def line_offset(image: NDArray[np.uint8], settings: LineSettings) -> float | None:
-    """Return the position of the line, from -1 (right edge) to 1 (left edge); None if not found.
+    """Return the position of the line, from -1 (right edge) to 1 (left edge); None without a line.
 
     Parameters
     ----------
@@ -113,7 +117,7 @@ class CameraLine:
     camera
         The camera.
     half_width_m
-        Half the width of floor that the lower edge of an image shows, in m.
+        Half the width, in m, of the strip of floor at the lower edge of an image.
     settings
         Appearance of a line.
     """
@@ -123,6 +127,6 @@ class CameraLine:
     settings: LineSettings = LineSettings()
 
     def offset_m(self) -> float | None:
-        """Return how far to the left of the centre the line is, in m; None if not found."""
+        """Return how far the line is to the left of the centre, in m; None without a line."""
         offset = line_offset(self.camera.frame(), self.settings)
         return None if offset is None else offset * self.half_width_m

@@ -11,7 +11,7 @@ from .create2 import Counts
 from .protocol import Message, ProtocolError
 
 TURNS = {"left": math.pi / 2, "right": -math.pi / 2, "around": math.pi}
-"""Turning angle of each turning action, in radians, anticlockwise."""
+"""Angle of each turning action, in radians; positive angles are anticlockwise."""
 STRAIGHT = "straight"
 
 
@@ -24,11 +24,11 @@ class Order:
     number
         Number of the order.
     turn_rad
-        Angle of the turn, anticlockwise.
+        Angle of the turn in radians, positive anticlockwise; 0 without a turn.
     start
-        Tag of the waypoint where it begins.
+        Tag of the waypoint where the order begins.
     tags, metres
-        Tags of the waypoints ahead, and the distance of each from the previous one.
+        Tags of the waypoints of the run, and the distance in m of each from the previous one.
     granted
         Number of these waypoints to which the robot may drive.
     turned
@@ -36,9 +36,10 @@ class Order:
     passed
         Number of waypoints reached.
     since
-        Wheel counters at the beginning of the turn, or at the last waypoint.
+        Wheel counters read at the beginning of the turn, or at the last waypoint reached.
     ahead_m
-        Distance of the robot past that waypoint at that time (negative: before it).
+        Distance in m of the robot past the last waypoint reached when `since` was read; negative if
+        the robot was before the waypoint.
     """
 
     number: int
@@ -54,7 +55,7 @@ class Order:
 
     @classmethod
     def of(cls, message: Message) -> Order:
-        """Create the order from a message.
+        """Create an order from a message of the server.
 
         Raises
         ------
@@ -82,7 +83,7 @@ class Order:
             raise ProtocolError(f"no order: {error!r}") from None
 
     def cut(self, upto: int) -> None:
-        """End the order after `upto` waypoints, or after those reached if these are more."""
+        """Shorten the order to `upto` waypoints, or to those already reached if these are more."""
         upto = max(upto, self.passed)
         del self.tags[upto:], self.metres[upto:]
 
@@ -92,7 +93,7 @@ class Order:
         Parameters
         ----------
         rolled_m
-            Distance rolled since `since`.
+            Distance in m rolled since the reading `since`.
         """
         granted = min(self.granted, len(self.tags))
         return sum(self.metres[self.passed : granted]) - rolled_m - self.ahead_m
@@ -108,7 +109,7 @@ class Memory:
     _written: str = field(default="", repr=False)
 
     def save(self) -> None:
-        """Save the memory if it has changed and a file is given."""
+        """Save the memory to its file, if there is one and the memory has changed."""
         if self.path is None:
             return
         order = None if self.order is None else vars(self.order)
@@ -122,7 +123,7 @@ class Memory:
 
     @classmethod
     def load(cls, path: Path | None) -> Memory:
-        """Load the saved memory; empty if it cannot be read."""
+        """Load the saved memory; return an empty memory if it cannot be read."""
         memory = cls(path)
         try:
             known = json.loads(path.read_text(encoding="utf-8")) if path is not None else {}

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 @dataclass
 class Pid:
-    """A controller that reduces an error to zero.
+    """A controller that regulates an error to zero.
 
     Attributes
     ----------
     proportional, integral, derivative
-        Weights of the error, of its integral over time (per second) and of its change (seconds).
+        Weights of the error (no unit), of its integral over time (1/s) and of its derivative (s).
     limit
         Limit of the absolute output; while it is exceeded, the integral is not updated.
     """

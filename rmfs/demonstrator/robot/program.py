@@ -1,6 +1,6 @@
 """The robot's program, which turns orders into motion and reports progress to the server.
 
-Its step function is called repeatedly (20 times a second is enough) and never waits.
+Its method `step` is to be called repeatedly (20 times a second is enough) and never waits.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class LineSensor(Protocol):
     """A sensor that sees the line on the floor ahead."""
 
     def offset_m(self) -> float | None:
-        """Return how far to the left of the centre the line is, in m; None if not found."""
+        """Return how far the line is to the left of the centre, in m; None without a line."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Settings:
     turn_rad_s
         Angular speed of turns on the spot.
     creep_m_s
-        Lowest speed, for the last millimetres and for finding a tag.
+        Lowest speed, used for the last millimetres and when searching for a tag.
     tag_ahead_m
         Distance before the centre of a tag at which the reader detects it.
     overshoot_m
@@ -44,7 +44,8 @@ class Settings:
     blind_m
         Maximum distance that the robot drives without seeing a line.
     search_m, searches
-        Distance around the place that is searched for a missed tag, and number of searches.
+        Distance around its expected position within which a missed tag is searched for, and maximum
+        number of searches.
     steering
         Weights and limit of the PID controller (`Pid`) from the offset in m to the angular speed in
         rad/s.
@@ -72,17 +73,17 @@ class Program:
     Parameters
     ----------
     base
-        Driver of its base.
+        Driver of the robot's base.
     line
-        Its line sensor.
+        Line sensor.
     tags
-        Its tag reader.
+        Tag reader.
     link
-        Its link to the server.
+        Link to the server.
     settings
-        Settings of its motion.
+        Settings of the robot's motion.
     memory
-        Persistent memory of its order, in case the program is killed.
+        Persistent memory of the order, in case the program is killed.
     """
 
     def __init__(

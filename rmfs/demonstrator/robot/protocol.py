@@ -2,9 +2,10 @@
 
     frame := length (4 bytes, big-endian) code (32 bytes, HMAC-SHA256) text (length bytes, UTF-8)
 
-The code covers the text and a label, so that no frame is valid in another context. The label is the
-server's nonce during the handshake, and the direction afterwards. Both sides know a secret; the key
-of a session is derived from it and from a nonce of each side.
+The code covers the text and a label, so that no frame is valid in another context. Labels
+distinguish the frames of the handshake and, afterwards, the two directions. The label of the
+robot's first frame contains the server's nonce. Both sides know a secret; the key of a session is
+derived from it and from a nonce of each side.
 """
 
 from __future__ import annotations
@@ -19,14 +20,15 @@ VERSION = 1
 LARGEST = 65_536
 """Maximum length of a text in bytes; a longer one is refused before it is read."""
 WELCOME, HELLO, SERVER, ROBOT = b"welcome", b"hello/", b"server", b"robot"
-"""Labels of the server's first frame, the robot's first (with a nonce), and each direction."""
+"""Labels of the server's first frame, of the robot's first frame (followed by the server's nonce),
+and of later frames in each direction."""
 _LENGTH, _HEAD = 4, 36
 
 Message = dict[str, Any]
 
 
 class ProtocolError(Exception):
-    """The other side violates the protocol, and the connection must be closed."""
+    """Raised if the other side violates the protocol; the connection must then be closed."""
 
 
 def code(key: bytes, label: bytes, text: bytes) -> bytes:
@@ -35,12 +37,12 @@ def code(key: bytes, label: bytes, text: bytes) -> bytes:
 
 
 def session_key(secret: bytes, server_nonce: str, robot_nonce: str) -> bytes:
-    """Return the key of a session."""
+    """Return the key of a session, derived from the secret and both nonces."""
     return code(secret, b"session", f"{server_nonce}/{robot_nonce}".encode())
 
 
 def pack(message: Message, key: bytes, label: bytes) -> bytes:
-    """Return a message as a frame; raises ValueError if it is longer than a frame may be."""
+    """Return a message as a frame; raise ValueError if its text is longer than `LARGEST`."""
     text = json.dumps(message, separators=(",", ":"), allow_nan=False).encode()
     if len(text) > LARGEST:
         raise ValueError(f"a message of {len(text)} bytes; at most {LARGEST}")
@@ -82,7 +84,10 @@ class Unpacker:
 
 
 def text_of(message: Message, name: str, longest: int = 64) -> str:
-    """Return a text field; raise ProtocolError if it is missing, empty, too long or no text."""
+    """Return a text field of a message; raise ProtocolError if there is no valid text.
+
+    A text is invalid if it is empty or too long.
+    """
     value = message.get(name)
     if not isinstance(value, str) or not 0 < len(value) <= longest:
         raise ProtocolError(f"{name} = {value!r}; it is a text of 1 to {longest} characters")
@@ -90,7 +95,7 @@ def text_of(message: Message, name: str, longest: int = 64) -> str:
 
 
 def whole(message: Message, name: str) -> int:
-    """Return an integer field; raise ProtocolError if it is missing, negative or no integer."""
+    """Return an integer field of a message; raise ProtocolError if it is not an integer >= 0."""
     value = message.get(name)
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise ProtocolError(f"{name} = {value!r}; it is a whole number, not negative")

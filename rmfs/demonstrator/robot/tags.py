@@ -6,10 +6,10 @@ from typing import Protocol
 
 
 class TagReader(Protocol):
-    """A reader of the tag beneath the robot."""
+    """A reader of the tags over which the robot drives."""
 
     def read(self) -> str | None:
-        """Return a tag detected since the previous call, or None."""
+        """Return the tag detected since the previous call; None if there is none."""
 
 
 class SerialTagReader:
@@ -27,7 +27,7 @@ class SerialTagReader:
         self._last: str | None = None
 
     def read(self) -> str | None:
-        """Return the last tag read since the previous call, or None; a repeated tag is left out."""
+        """Return the last tag read since the previous call; None if there is no new tag."""
         found = None
         for byte in self._port.read(256):
             if byte not in b"\r\n":

@@ -1,8 +1,8 @@
 """The clock of a demonstration: the wall clock, or that of an emulated room.
 
 One clock governs plans, heartbeats and timeouts. An emulated room keeps the clock and synchronises
-with the server: it sends the time and the number of bytes that each robot has sent. The server
-answers when it has processed this time, with the number of bytes it has sent to each robot.
+with the server: it sends the time, and the number of bytes that each robot has sent. When the
+server has processed this time, it answers with the number of bytes that it has sent to each robot.
 
     room -> server   tick: time_us, sent (bytes by robot)
     server -> room   tock: time_us, sent (bytes by robot)
@@ -21,11 +21,11 @@ ROOM = "room"
 """Name with which an emulated room identifies itself."""
 
 PATIENCE_S = 60.0
-"""Wall time without a message after which an emulated room counts as gone, in s."""
+"""Wall time, in s, without a message after which an emulated room counts as gone."""
 
 
 class RoomGoneError(RuntimeError):
-    """The emulated room has stopped responding."""
+    """Raised if the emulated room has stopped responding."""
 
 
 class Clock(Protocol):
@@ -39,13 +39,13 @@ class Clock(Protocol):
 
 
 class WallClock:
-    """The wall clock; the demonstration is at `begin_us` when the clock is created."""
+    """The wall clock. When it is created, the time of the demonstration is `begin_us`."""
 
     def __init__(self, begin_us: int = 0) -> None:
         self._zero = time.monotonic() - begin_us / 1e6
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Read messages until the time is reached."""
+        """Read messages until a time is reached, and return them."""
         messages: list[tuple[str, Message]] = []
         while (left_s := time_us / 1e6 - (time.monotonic() - self._zero)) > 0:
             messages += hub.poll(time_us, left_s)
@@ -63,7 +63,7 @@ class RoomClock:
         self._expected: dict[str, int] = {}
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Read until the room has reached the time and its robots' bytes have arrived.
+        """Read messages until the room has reached a time and its robots' bytes have arrived.
 
         Raises
         ------
@@ -84,7 +84,7 @@ class RoomClock:
         return messages
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Send the room the message to continue."""
+        """Tell the room to continue."""
         if self._room_us == time_us:
             self._answer(hub, time_us)
 

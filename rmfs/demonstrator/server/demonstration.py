@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Demonstration:
-    """The real robots of a demonstration, and how they are reached.
+    """The real robots of a demonstration, and how the server reaches them.
 
     Attributes
     ----------
@@ -36,11 +36,12 @@ class Demonstration:
     tags
         The tag of every waypoint.
     journal
-        File of received messages; if it exists, the run repeats it and goes on from its end.
+        File of received messages. If it exists, the run repeats its messages and continues from
+        there.
     is_emulated
         Whether the robots are in an emulated room, which keeps the clock.
     past_failure
-        Whether to leave out the messages of the tick at which the server failed.
+        Whether to omit the messages of the tick at which the server failed.
     """
 
     hub: Hub
@@ -52,7 +53,7 @@ class Demonstration:
     traffic: GuidedTraffic | None = None
 
     def run(self, *inputs: Any, seed: int = 0, **options: Any) -> Run:
-        """Run the simulation, with some of its robots real.
+        """Run a simulation in which some of the robots are real.
 
         Parameters
         ----------

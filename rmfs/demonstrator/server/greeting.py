@@ -18,7 +18,10 @@ from rmfs.demonstrator.robot.protocol import (
 
 
 class Guest(NamedTuple):
-    """A client that has identified itself: name, key of its session, bytes after its hello."""
+    """A client that has identified itself.
+
+    It has a name, the key of its session, and the bytes that followed its hello.
+    """
 
     name: str
     key: bytes
@@ -26,7 +29,7 @@ class Guest(NamedTuple):
 
 
 class Greeting:
-    """The handshake of one connection; a hello is valid for this welcome only.
+    """The handshake of one connection: a welcome, and a hello that is valid for this welcome only.
 
     Parameters
     ----------
@@ -40,12 +43,12 @@ class Greeting:
         self._unpacker = Unpacker()
 
     def welcome(self) -> bytes:
-        """Return the first frame."""
+        """Return the first frame of the connection, the welcome."""
         message = {"type": "welcome", "version": VERSION, "nonce": self._nonce}
         return pack(message, self._secret, WELCOME)
 
     def receive(self, data: bytes) -> Guest | None:
-        """Add received bytes; return the client once it has identified itself.
+        """Add received bytes; return the client if it has identified itself by then, else None.
 
         Raises
         ------

@@ -1,10 +1,10 @@
 """Guides real robots along the plans of the traffic layer, and adapts the plans to them.
 
-Each tick begins with the messages of the robots. A robot that has not confirmed what its plan
-requires before the next tick is late: its plan is shifted, with those behind it in the order of
-waypoint use. Then robots whose next motion is due are sent off, as far as the path is clear. So the
-plan never runs ahead of reality, and a robot never enters a waypoint before the robot that is
-planned before it has left.
+Each tick begins with the messages of the robots. A robot is late if its plan requires something
+before the next tick that the robot has not confirmed. Its plan is then postponed, together with the
+plans of robots that use the same waypoints later. Then the robots whose next motion is due get
+their orders, as far as the path is clear. Therefore, the plan never runs ahead of reality, and a
+robot never enters a waypoint before the robots planned ahead of it have left the waypoint.
 """
 
 from __future__ import annotations
@@ -26,15 +26,16 @@ if TYPE_CHECKING:
 _log = logging.getLogger("rmfs.demonstrator")
 
 TICK_US = 50_000
-"""Time between two ticks."""
+"""Time between two ticks, in microseconds."""
 GIVE_UP_US = 30_000_000
-"""Time of silence after which other robots are planned around a robot."""
+"""Time of silence, in microseconds, after which other robots are planned around a robot."""
 MOST_TROUBLES = 2
-"""After this many failed attempts at an order, other robots are planned around the robot, too."""
+"""Number of failed attempts at an order after which other robots are planned around the robot."""
 GONE_US = 3_600_000_000
-"""Time by which the plan of a robot that is planned around is postponed."""
+"""Time, in microseconds, by which a robot's plan is postponed if others are planned around it."""
 SETTLE_US = 4_000_000
-"""Time given to a robot to stop at the last waypoint it may use, when plans are remade."""
+"""Time, in microseconds, that a robot gets to stop at the last waypoint granted when plans are
+made anew."""
 
 COUNTED = (
     *("orders", "delays", "regroupings", "strayed"),
@@ -43,7 +44,7 @@ COUNTED = (
 
 
 class Guide:
-    """Real robots on the plans of a traffic layer.
+    """Guides real robots along the plans of a traffic layer.
 
     Parameters
     ----------
@@ -84,9 +85,10 @@ class Guide:
         messages
             Messages of the robots, in order.
         silent
-            Robots with a session that are silent.
+            Robots that are silent although they have a session.
         regroups
-            Whether plans may be made anew now, rather than at the next tick. Default True.
+            Whether plans may be made anew now; otherwise, this waits for a later tick. Default:
+            True.
 
         Returns
         -------
@@ -108,7 +110,7 @@ class Guide:
         return outbox
 
     def forget_strayed(self) -> None:
-        """Forget where robots have strayed to; they report it again on receiving their orders."""
+        """Forget where robots have strayed; they report it again when they receive their orders."""
         for robot in self.robots.values():
             robot.astray = None
 

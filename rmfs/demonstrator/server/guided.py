@@ -1,4 +1,4 @@
-"""The traffic layer of a demonstration: the interface of the simulation, with real robots."""
+"""The traffic layer of a demonstration, with real robots behind the interface of `Traffic`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class GuidedTraffic(Traffic):
-    """Traffic with some physical robots, whose clock determines the simulated time.
+    """The traffic layer of a warehouse with some real robots; a clock sets the simulated time.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ class GuidedTraffic(Traffic):
     tags
         The tag of every waypoint.
     hub
-        Their sessions.
+        Sessions of the real robots.
     clock
-        Advances the time.
+        Clock of the demonstration.
     journal
         Journal of received messages.
     options
@@ -60,7 +60,7 @@ class GuidedTraffic(Traffic):
         self.advance = self._advance_guided
 
     def fork(self, memo: dict[int, Any] | None = None) -> NoReturn:
-        """Refuse: there is only one of each real robot.
+        """Refuse to copy the traffic, since real robots cannot be copied.
 
         Raises
         ------
@@ -125,7 +125,7 @@ class GuidedTraffic(Traffic):
     def end(self) -> None:
         """End the demonstration: close sessions, and notify an emulated room.
 
-        After a failure the room waits for the server to be started again, as robots do.
+        After a failure, the room waits until the server has been restarted, as robots do.
         """
         if not self._failed:
             self._hub.send(ROOM, {"type": "end"})

@@ -1,7 +1,7 @@
 """Sessions with robots over TCP.
 
-Clients without the secret, with another version, or that send invalid or too much data are
-refused and logged; other sessions are not affected.
+A client is refused, and this is logged, if it does not know the secret, has another version, or
+sends invalid or too much data. Other sessions are not affected.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 _log = logging.getLogger("rmfs.demonstrator")
 
 MOST_CONNECTIONS = 256
-"""Maximum number of open connections, identified or not."""
+"""Maximum number of open connections, including those that have not identified themselves."""
 UNKNOWN_S = 5.0
-"""Wall time within which a connection must identify itself, in s."""
+"""Wall time, in s, within which a client must identify itself."""
 
 
 class _Connection:
@@ -70,7 +70,7 @@ class Hub:
     Attributes
     ----------
     refused
-        Number of connections that ended before a session began.
+        Number of connections that ended before their session began.
     dropped
         Names of robots whose session has ended and that have not reconnected.
     """
@@ -112,9 +112,10 @@ class Hub:
         return (session.received, session.sent) if session else (0, 0)
 
     def poll(self, now_us: int, timeout_s: float) -> list[tuple[str, Message]]:
-        """Read for at most some time; return new messages in the order of arrival.
+        """Read for at most some time; return the new messages in order of arrival.
 
-        A session that begins yields `{"type": "connected"}`, one that ends `{"type": "gone"}`.
+        The beginning of a session is reported as `{"type": "connected"}`, its end as
+        `{"type": "gone"}`.
         """
         for key, _ in self._selector.select(timeout_s):
             if key.fileobj is self._listener:
@@ -128,14 +129,14 @@ class Hub:
     def send(self, name: str, message: Message) -> None:
         """Send a message, or drop it if there is no session.
 
-        When a robot's next session has begun, the server sends its unfinished order again.
+        The server sends a robot's unfinished order again when the next session has begun.
         """
         session = self._sessions.get(name)
         if session is not None and session.channel is not None:
             session.channel.send(message)
 
     def flush(self, now_us: int) -> None:
-        """Write the frames that are due."""
+        """Write the frames that are due to be sent."""
         for session in list(self._sessions.values()):
             assert session.channel is not None
             try:

@@ -1,8 +1,9 @@
 """A journal of received messages, tick by tick, so that a killed server can resume.
 
-A server that is restarted with its journal repeats everything as fast as it can. It reaches the
-same state, as it receives the same messages and all its random draws are seeded. It fails again
-where it failed: that tick is marked, and can be left out. None of its orders has been sent.
+A server that is restarted with its journal repeats the demonstration as fast as it can. It reaches
+the same state, because it receives the same messages and all its random draws are seeded. If the
+server had failed, it would fail again at the same tick. Therefore this tick is marked, and its
+messages can be omitted; none of the orders of the tick has been sent.
 """
 
 from __future__ import annotations
@@ -30,15 +31,15 @@ class Journal:
     path
         The file; created if it does not exist.
     settings
-        Settings of the demonstration; a journal of another one is refused.
+        Settings of the demonstration; a journal with other settings is refused.
     past_failure
-        Whether to leave out the messages of the tick at which the server failed. Default False.
+        Whether to omit the messages of the tick at which the server failed. Default: False.
 
     Raises
     ------
     InputError
-        If the file is not a journal, or belongs to another demonstration, or contains no failure
-        that could be left out.
+        If the file is not a journal or belongs to another demonstration, or if `past_failure` is
+        true and the journal contains no failure.
     """
 
     def __init__(self, path: Path, settings: dict[str, Any], *, past_failure: bool = False) -> None:
@@ -46,9 +47,9 @@ class Journal:
         past = _Past(path, head)
         left_out = _to_leave_out(path, past) if past_failure else None
         self.left_out = past.left_out | ({left_out} if left_out is not None else set())
-        """Times (us) of failed ticks, whose messages are left out."""
+        """Times (us) of the failed ticks whose messages are omitted."""
         self.begins_us = max([*past.heard, *self.left_out], default=-1)
-        """Up to this time (us), messages come from the journal."""
+        """Time (us) up to which messages come from the journal."""
         self._by_time = past.heard
         if not path.exists():
             path.write_text(head + "\n", encoding="utf-8")
@@ -59,7 +60,7 @@ class Journal:
             self._write({"time_us": left_out, "left_out": True})
 
     def heard_at(self, time_us: int) -> Heard:
-        """Return the messages and the silent robots of a past tick; none if they are left out."""
+        """Return the messages and the silent robots of a past tick; nothing if it is omitted."""
         if time_us in self.left_out:
             return [], frozenset()
         return self._by_time.get(time_us, ([], frozenset()))

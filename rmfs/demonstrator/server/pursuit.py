@@ -1,4 +1,4 @@
-"""Progress of a robot on a piece of its plan: its order, and what it has confirmed."""
+"""The order by which a robot follows a piece of its plan, and its confirmed progress."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ _TURNS = {0: [], 1: ["left"], 2: ["around"], 3: ["right"]}
 
 @dataclass
 class Pursuit:
-    """An order of the server, and the robot's progress on it.
+    """An order that the server has sent to a robot, and the robot's progress.
 
     Attributes
     ----------
     number
         Number of the order.
     move
-        The piece of the plan; its times change when the robot is late.
+        The piece of the plan that the order carries out. Its times change if the robot is late.
     heading_before_rad
-        Heading of the robot before the turn.
+        Heading of the robot, in rad, before the turn.
     waypoints
-        Waypoints from the first one after the start to the last.
+        Waypoints of the run, without its start.
     along_m
-        Distance of each waypoint from the start.
+        Distance of each waypoint from the start, in m.
     passed
         Number of waypoints that the robot has confirmed.
     turned, done
-        Whether the robot has turned; whether it stands at the end.
+        Whether the robot has turned, and whether it stands at the end of the run.
     granted
-        Number of waypoints to which the robot may drive: 0 until it has turned.
+        Number of waypoints to which the robot may drive; it is 0 until the robot has turned.
     troubles
         Number of times the robot has reported trouble since its last confirmed waypoint.
     """
@@ -60,18 +60,20 @@ class Pursuit:
     def of(
         cls, number: int, move: PlannedMove, heading_rad: float, layout: Layout, robot: int
     ) -> Pursuit:
-        """Create the pursuit of a move, not yet begun."""
+        """Create the pursuit of a move that has not begun."""
         waypoints, along, seconds = _course(layout, move, robot)
         turned = quarter_turns(heading_rad, move.heading_rad) == 0
         return cls(number, move, heading_rad, waypoints, along, seconds, turned=turned)
 
     def next_us(self, move: PlannedMove) -> int:
-        """Return the planned time of the robot at its first unconfirmed waypoint, or at its end.
+        """Return the planned time, in us, at the next waypoint that the robot has to confirm.
+
+        If it has confirmed all waypoints, return the end of the move.
 
         Parameters
         ----------
         move
-            The same piece of the plan, with its present times.
+            The piece of the plan with its present times.
         """
         if self.passed == len(self.waypoints):
             return move.end_us
@@ -79,7 +81,7 @@ class Pursuit:
         return move.start_us + late_us + math.floor(self.seconds[self.passed] * 1e6)
 
     def pass_waypoint(self, waypoint: int) -> bool:
-        """Record that the robot was seen at a waypoint; false if that is not on its path."""
+        """Record that the robot was seen at a waypoint; return false if this is not on its path."""
         if waypoint not in self.waypoints:
             return False
         self.turned = True
@@ -92,7 +94,7 @@ class Pursuit:
         del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
 
     def follow(self, move: PlannedMove, layout: Layout, robot: int) -> None:
-        """Replace the move by the same run cut short, which has its own times."""
+        """Replace the move by one that ends earlier on the same run, with its own times."""
         self.move = move
         self.waypoints, self.along_m, self.seconds = _course(layout, move, robot)
 
@@ -140,12 +142,12 @@ def _course(
 
 
 def quarter_turns(before_rad: float, after_rad: float) -> int:
-    """Return the turn between two headings in quarters, anticlockwise, 0 to 3."""
+    """Return the anticlockwise turn between two headings in rad, in quarters (0 to 3)."""
     return round((after_rad - before_rad) / (math.pi / 2)) % 4
 
 
 def straight_way(layout: Layout, move: PlannedMove) -> list[int]:
-    """Return the waypoints of a straight run, without the first."""
+    """Return the waypoints of a straight run, without its start."""
     along = np.array([math.cos(move.heading_rad), math.sin(move.heading_rad)])
     here, way = move.from_waypoint, []
     while here != move.to_waypoint:

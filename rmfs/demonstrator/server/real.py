@@ -1,4 +1,4 @@
-"""The server's knowledge of robots outside the simulation."""
+"""What the server knows about robots outside the simulation."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ if TYPE_CHECKING:
 
 @dataclass
 class RealRobot:
-    """The server's knowledge of a robot outside the simulation.
+    """What the server knows about a robot outside the simulation.
 
     Attributes
     ----------
     index
         Index of the robot in the layout.
     heading_rad
-        Its heading after its last completed order.
+        Heading in rad after the last completed order.
     pursuit
-        Its latest order, in progress or completed; None before the first.
+        Latest order, in progress or completed; None before the first order.
     is_present
-        Whether there is a session with it.
+        Whether there is a session with the robot.
     heard_us
-        Time of its last message, in microseconds.
+        Time of the last message, in microseconds.
     given_up
-        Whether other robots are planned around it.
+        Whether the robot has been given up, so that others are planned around it.
     astray
-        The waypoint at which it has lost its way.
+        Waypoint where the robot is after it has left its path; None if it is on its path.
     """
 
     index: int
@@ -47,14 +47,15 @@ class RealRobot:
 
     @property
     def is_busy(self) -> bool:
-        """Whether it has not completed its order."""
+        """Whether the robot has an order that it has not completed."""
         return self.pursuit is not None and not self.pursuit.done
 
     def heading_at(self, layout: Layout, waypoint: int) -> float:
-        """Return its heading at a waypoint to which it was not sent.
+        """Return the robot's probable heading, in rad, at a waypoint to which it was not sent.
 
-        If it was pushed aside, this is the heading of its run; if it turned wrongly, the direction
-        in which it has driven.
+        If this waypoint and the last confirmed one lie on a line along x or y, it is the direction
+        from the latter to the former, as after a wrong turn. Otherwise, it is the heading that the
+        robot has according to its order, as after a push.
         """
         pursuit = self.pursuit
         if pursuit is None:
@@ -69,7 +70,7 @@ class RealRobot:
 
 
 def check_floor(layout: Layout, tags: Sequence[str]) -> None:
-    """Check that robots that follow lines and read tags can use a layout; else raise InputError."""
+    """Raise InputError if robots that follow lines and read tags cannot use a layout."""
     if layout.elevators:
         raise InputError(f"{layout.name}: elevators cannot be driven by real robots")
     if len(tags) != layout.waypoints or len(set(tags)) != len(tags):
