@@ -75,7 +75,8 @@ ASKED_BY_TA = {
         "psa",
         "from rmfs.control.psa.nearest import Nearest as Base",
         "def place(self, robot):\n        return self.view.pick_stations[0].waypoint",
-        r"^psa Odd at \d+\.\d{3} s: place \d+ is impossible: waypoint \d+ is not a storage location$",
+        r"^psa Odd at \d+\.\d{3} s: place \d+ is impossible: "
+        r"waypoint \d+ is not a storage location$",
     ),
     "repositioning: no move": (
         "repositioning",
