@@ -73,7 +73,7 @@ def draw(
     path: Path | None,
     wish: Wish | None = None,
 ) -> Figure:
-    """Draw a plot.
+    """Draw one of the `KINDS` of plots from results.
 
     Parameters
     ----------

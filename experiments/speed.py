@@ -28,7 +28,7 @@ REFERENCE_STEPS = 2_000_000
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A case to time.
+    """Inputs of a run that is timed.
 
     Attributes
     ----------

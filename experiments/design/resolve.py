@@ -36,7 +36,7 @@ _SHIPPED = "instances/"
 
 @dataclass(frozen=True)
 class Inputs:
-    """The inputs of a run."""
+    """The loaded inputs of a run."""
 
     layout: Layout
     scenario: Scenario

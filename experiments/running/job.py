@@ -56,7 +56,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of a job.
+    """What a job returns: the results of its run, or the error.
 
     Attributes
     ----------
@@ -89,5 +89,5 @@ class Outcome:
 
 
 def run_key(arm_digest: str, seed: int) -> str:
-    """Return the identity of a run."""
+    """Return the key that identifies a run."""
     return hashlib.sha256(f"{arm_digest}/{seed}".encode()).hexdigest()[:24]

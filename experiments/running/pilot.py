@@ -26,7 +26,7 @@ SHARE = 0.05
 """Share of a run's duration that a pilot run simulates."""
 
 LEAST_S, MOST_S = 600.0, 7200.0
-"""Minimum and maximum simulated time of a pilot run."""
+"""Minimum and maximum simulated time of a pilot run, in s."""
 
 ENOUGH = 8
 """Number of finished runs that makes pilot runs unnecessary."""

@@ -25,7 +25,7 @@ BOOTSTRAP_SEED = 0
 
 @dataclass(frozen=True, slots=True)
 class Interval:
-    """A mean and the interval around it.
+    """A mean and its confidence interval.
 
     Attributes
     ----------

@@ -29,7 +29,7 @@ _LARGEST_MIB = 256
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """An answer.
+    """An answer to a question, and how it was found.
 
     Attributes
     ----------

@@ -37,7 +37,7 @@ KINDS: Mapping[Kind, str] = {
 
 @dataclass(frozen=True)
 class Field:
-    """A field of a question or answer.
+    """Definition of a field of a question or answer.
 
     Attributes
     ----------

@@ -44,7 +44,7 @@ MEANING = {
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One violation.
+    """One violation of a rule by a trace.
 
     Attributes
     ----------

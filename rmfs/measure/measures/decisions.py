@@ -21,7 +21,7 @@ SOURCES = {
 
 
 class Decisions(Measure):
-    """Decisions of all controllers."""
+    """Number, sources and wall time of the decisions of all controllers."""
 
     columns = (
         Column("decisions", INTEGER, "decisions", "Decisions made by all controllers"),
@@ -59,7 +59,7 @@ class Decisions(Measure):
 
 
 class Optimisers(Measure):
-    """Questions to optimisers."""
+    """Number, gaps, delays and wall times of questions to optimisers."""
 
     columns = (
         Column("optimiser_calls", INTEGER, "calls", "Questions to optimisers"),
