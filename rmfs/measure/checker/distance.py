@@ -4,8 +4,8 @@ Each point moves with constant acceleration, so the squared distance over a comm
 a polynomial of degree four. In Bernstein form on that interval its graph lies in the convex hull of
 its coefficients: if no coefficient is below the limit, neither is the distance at any time. The
 first and last coefficients are values of the polynomial, so a violation is proven if one of them is
-below the limit. If neither applies, the interval is halved (de Casteljau). The bound converges to the
-true minimum quadratically in the length of the interval, so a few rounds suffice.
+below the limit. If neither applies, the interval is halved (de Casteljau). The bound converges to
+the true minimum quadratically in the length of the interval, so a few rounds suffice.
 """
 
 from __future__ import annotations
