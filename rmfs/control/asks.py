@@ -35,7 +35,7 @@ class Answer:
     solution
         Values by name; None if there is no solution or none was found in time.
     objective, bound
-        Cost of the solution, and proven lower bound; not finite if there is none.
+        Cost of the solution, and proven lower bound of the cost; not finite where there is none.
     status
         Final status, as the solver names it.
     backend
@@ -159,7 +159,7 @@ class Outcome(StrEnum):
 
 
 class Asker(Protocol):
-    """The members of `rmfs.control.base.Controller` that its questions to optimisers need."""
+    """The part of `rmfs.control.base.Controller` by which a controller gets its answers."""
 
     in_flight: int
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.control.base import Controller, Parameters
 
 DEFAULTS = {problem: problem.default for problem in Problem}
-"""The rule of a problem that a controllers file does not mention."""
+"""For each problem, the name of the rule used if a controllers file does not mention it."""
 
 _SHARED: dict[type[Parameters], str] = {TurnoverParameters: "classes", ZoneParameters: "zones"}
 """Models whose parameters must be equal in all rules that have them, and what they describe."""

@@ -22,8 +22,8 @@ class Question:
     robot
         The robot for which TA asks; -1 for a turn.
     stations
-        For `pick pod` and `replenishment pod`, the station; for `next station`, those to choose
-        from.
+        For `pick pod` and `replenishment pod`, the station; for `next station`, the stations
+        to choose from.
     """
 
     problem: Problem

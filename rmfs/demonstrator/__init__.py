@@ -1,1 +1,4 @@
-"""Physical or emulated robots in place of simulated ones (as in the RAWSim-O paper, section 4)."""
+"""Physical or emulated robots in place of simulated ones (Merschformann, Xie and Li 2018).
+
+Section 4 of their paper describes the demonstrator of RAWSim-O.
+"""

@@ -70,7 +70,7 @@ class Orders(Reward):
 
 
 class Lateness(Reward):
-    """Minus the tardiness, in seconds, of every order when it is completed (0 if it is on time)."""
+    """For every completed order, minus its tardiness in seconds (0 if it is on time)."""
 
     def order_completed(self, order: Order) -> None:
         """Subtract the seconds by which the order is late, if it is."""
@@ -86,7 +86,7 @@ class LateOrders(Reward):
 
 
 class Turnover(Reward):
-    """Minus the seconds from arrival to completion of every order, when it is completed."""
+    """For every completed order, minus the seconds from its arrival to its completion."""
 
     def order_completed(self, order: Order) -> None:
         """Subtract the seconds from the order's arrival to its completion."""

@@ -199,8 +199,8 @@ class LiveRun:
     def news(self, known: Known, page: str = "") -> bytes:
         """Return the packed motion and events that a page does not know yet.
 
-        A row of motion replaces all that the page knows about the motion of this robot after the
-        start of the row.
+        A row of motion replaces all that the page knows about the motion of the same robot after
+        the start of the row.
 
         Parameters
         ----------

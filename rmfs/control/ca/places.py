@@ -44,9 +44,9 @@ def choose(
     full_too: bool = False,
     among: Sequence[RecoveryStation] | None = None,
 ) -> int:
-    """Choose an energy station for a robot, by its number.
+    """Return the number of the energy station chosen for a robot, or -1.
 
-    The number is -1 if no station has room, or the chosen station cannot be reached.
+    It is -1 if no station has room, or the chosen station cannot be reached.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""MM random: periodically installs a controller drawn from a list."""
+"""MM random: periodically installs a set of rules drawn from a list."""
 
 from __future__ import annotations
 

@@ -131,8 +131,8 @@ class InboundMatches(Parameters):
 
     An order is assumed to take its units from the nearest pods that can spare them. It scores one
     point for each pair of a pod and a SKU taken from this pod. If the number of units taken times
-    the distance of the pod in m is at most `near_unit_metres`, the pair scores more than one point:
-    the number of pods, minus the number of nearer pods.
+    the distance of the pod in m is at most `near_unit_metres`, the pair instead scores the number
+    of pods that are considered, minus the number of nearer ones.
     """
 
     criterion: Literal["inbound-matches"] = "inbound-matches"

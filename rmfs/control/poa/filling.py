@@ -93,7 +93,7 @@ class Filling(PickOrderAssignment[P]):
         return [stations[index] for index in sorted(to_fill)]
 
     def servable_rows(self) -> NDArray[np.intp]:
-        """Return the rows of the backlog whose orders stock can serve, each considered alone."""
+        """Return the rows of backlog orders that stock can serve, each order considered alone."""
         return self.view.orders.servable(self.view.inventory.free_stock).nonzero()[0]
 
     def oldest_order(self) -> Order | None:

@@ -1,4 +1,4 @@
-"""POA lines-in-common: the order with the most SKUs in common with orders at a station."""
+"""POA lines-in-common: assigns the order with the most SKUs in common with a station's orders."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ P = TypeVar("P", bound=Parameters)
 
 
 class PathPlanning(Controller[P]):
-    """Selects a planner of the traffic core, to which its parameters are passed.
+    """Selects a planner of the traffic core, which gets the parameters of the controller.
 
     Attributes
     ----------

@@ -24,9 +24,10 @@ class PbsParameters(TreeParameters):
 
 
 class Cbs(PathPlanning[TreeParameters]):
-    """Conflict-based search: branches on which of two conflicting robots gives way, best first.
+    """CBS (conflict-based search): of two conflicting robots, one gives way; both are tried.
 
-    Paths are planned up to the destinations, without a horizon.
+    The most promising choice is examined first. Paths are planned up to the destinations, without a
+    horizon.
     """
 
     parameters_model = TreeParameters
@@ -34,9 +35,9 @@ class Cbs(PathPlanning[TreeParameters]):
 
 
 class Pbs(PathPlanning[PbsParameters]):
-    """Priority-based search: branches on which of two conflicting robots plans around the other.
+    """PBS (priority-based search): of two conflicting robots, one plans around the other.
 
-    Only conflicts within a rolling horizon are resolved.
+    Both choices can be tried. Only conflicts within a rolling horizon are resolved.
     """
 
     parameters_model = PbsParameters

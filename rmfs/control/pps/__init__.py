@@ -60,9 +60,9 @@ P = TypeVar("P", bound=LateBinding)
 class PodSelection(Controller[P]):
     """Chooses pods for robots that TA sends to work for a station.
 
-    TA asks which pod an empty robot should bring to a station, or to which station a pod that has
-    been served should go next. The simulation then binds the requests (units that orders need) that
-    the pod can serve there.
+    TA asks which pod a robot should fetch and bring to a station, or to which station a pod that
+    has been served should go next. The simulation then binds the requests (units that orders need)
+    that the pod can serve there.
     """
 
     problem = Problem.PPS

@@ -24,7 +24,7 @@ class Candidates:
     Attributes
     ----------
     pods
-        Pods, ascending, shape (C,).
+        Numbers of the pods, in ascending order, shape (C,).
     """
 
     def __init__(

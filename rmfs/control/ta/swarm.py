@@ -65,8 +65,8 @@ class Swarm(Solo[SwarmParameters]):
 
     Let S be the number of stations, and R be `rest_share` times S, rounded. If the number of
     stations without stimulus exceeds R by e, a robot can also draw rest, with the weight
-    e^3 / (S - R)^3. If rest is drawn, no multiplier grows. A robot is matched with the station that
-    it has drawn as long as it carries a pod.
+    e^3 / (S - R)^3. If rest is drawn, no multiplier grows. As long as a robot carries a pod, it
+    is matched with the station that it has drawn.
     """
 
     parameters_model = SwarmParameters

@@ -57,7 +57,7 @@ class TurnoverClasses(Tracker):
     - SKUs are sorted by units ordered, the most first; ties are broken by number. The weight of a
       SKU is the mean of two shares: its share of all units ordered, and the share of its space per
       unit in the sum of the spaces per unit of all SKUs. A class takes SKUs until their total
-      weight reaches the share of the pods' capacity that its pods have.
+      weight reaches the share of its pods in the capacity of all pods.
 
     Units are counted since the last classification; the first one also counts past orders. Pods and
     SKUs are classified when a rule first requests the tracker. They are reclassified on the first

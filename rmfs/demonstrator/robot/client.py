@@ -136,7 +136,7 @@ class Link:
             return []
 
     def send(self, message: Message) -> bool:
-        """Queue a message for the server; return false if, without a session, it is lost."""
+        """Queue a message for the server; return false if there is no session to send it."""
         if self._channel is None:
             return False
         self._channel.send(message)
@@ -149,7 +149,7 @@ class Link:
                 self._wire.write(frame)
 
     def wait(self, timeout_s: float) -> None:
-        """Wait until data has arrived or time has run out; only for plain TCP connections."""
+        """Wait until data has arrived or time has run out; this requires a `TcpWire`."""
         if isinstance(self._wire, TcpWire):
             select.select([self._wire.fileno()], [], [], timeout_s)
 

@@ -32,8 +32,8 @@ def guarded(
     stop
         Function that stops the robot, called when the program has ended.
     patience_s
-        After the first step of the program, the time in s without a further step after which it is
-        killed.
+        Time in s after which the program is killed if it makes no further step. It counts from the
+        first step.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Detection of the line on the floor in a camera image (RAWSim-O paper, section 4).
+"""Detection of the line on the floor in a camera image, as in RAWSim-O.
 
 Pixels within a colour range are kept, small specks are removed by erosion, and the largest contour
 is taken as the line. The middle of its lower end gives its position.

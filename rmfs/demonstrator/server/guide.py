@@ -1,7 +1,7 @@
 """Guides real robots along the plans of the traffic layer, and adapts the plans to them.
 
-Each tick begins with the messages of the robots. A robot is late if its plan requires something
-before the next tick that the robot has not confirmed. Its plan is then postponed, together with the
+Each tick begins with the messages of the robots. A robot is late if, before the next tick, its plan
+requires something that the robot has not confirmed. Its plan is then postponed, together with the
 plans of robots that use the same waypoints later. Then the robots whose next motion is due get
 their orders, as far as the path is clear. Therefore, the plan never runs ahead of reality, and a
 robot never enters a waypoint before the robots planned ahead of it have left the waypoint.

@@ -112,7 +112,7 @@ class Hub:
         return (session.received, session.sent) if session else (0, 0)
 
     def poll(self, now_us: int, timeout_s: float) -> list[tuple[str, Message]]:
-        """Read for at most some time; return the new messages in order of arrival.
+        """Read for at most `timeout_s`; return the new messages in order of arrival.
 
         The beginning of a session is reported as `{"type": "connected"}`, its end as
         `{"type": "gone"}`.
