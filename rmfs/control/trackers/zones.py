@@ -45,9 +45,8 @@ class Zones(Tracker):
     Places are assigned one after another. Of all pairs of an unassigned place and a zone that is
     not full, the next pair is chosen by the priority of the kind of zone; then by the least travel
     time of a loaded robot (from a place in a cache to the station, or from the station to a place
-    in a drop-off zone); then by the longest time in the other direction. Ties go to
-    the place with the lowest number, then to drop-off zones, then to the station with the lowest
-    number.
+    in a drop-off zone); then by the longest time in the other direction. Ties go to the place with
+    the lowest number, then to drop-off zones, then to the station with the lowest number.
 
     Attributes
     ----------
