@@ -180,7 +180,8 @@ def plan(
     base
         Entries that replace or extend those of the design's table `base`.
     replications
-        Number of seeds, instead of the design's own; only for designs without stages.
+        Number of seeds, instead of the design's own; only for designs without stages. If the design
+        lists its seeds, these are the first ones of the list.
     without
         Names of arms to leave out.
     told
@@ -195,8 +196,12 @@ def plan(
     _, table = design_file.read(path)
     if base or replications is not None:
         table = {**table, "base": {**table["base"], **(base or {})}}
-        if replications is not None:
-            table = {key: value for key, value in table.items() if key != "seeds"}
+        seeds = table.get("seeds")
+        if replications is not None and isinstance(seeds, list):
+            if not 1 <= replications <= len(seeds):
+                raise InputError(f"{path}: lists {len(seeds)} seeds; not {replications}")
+            table["seeds"] = seeds[:replications]
+        elif replications is not None:
             table["replications"] = replications
     return plan_of(table, path.parent, str(path), without=without, told=told)
 

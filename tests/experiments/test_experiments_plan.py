@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rmfs import experiments
+from rmfs.errors import InputError
 from rmfs.experiments.design.planning import PlanError, load
 from rmfs.instances import ROOT
 
@@ -81,6 +82,14 @@ def test_common_random_numbers_and_their_absence(design):
     assert len(set(seeds)) == len(seeds)
     again = experiments.plan(design(common_random_numbers=False))
     assert seeds == [again.seed(arm, r) for arm in again.arms for r in (1, 2, 3)]
+
+
+def test_fewer_replications_are_the_first_seeds(design):
+    path = design(replications=None, seeds=[31, 12, 53])
+    assert experiments.plan(path, replications=2).design.seeds == [31, 12]
+    with pytest.raises(InputError, match="lists 3 seeds; not 4"):
+        experiments.plan(path, replications=4)
+    assert experiments.plan(design(), replications=1).design.seeds_of() == [1]
 
 
 def test_seeded_parameters_take_the_seed(design):

@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from ledger import check_delays
+from matplotlib.figure import Figure
 
 import rmfs
+from rmfs.measure.plots.delays import BINS, LABELS, delays
 from rmfs.measure.recorder import TASKS
 from rmfs.measure.tables.delays import PARTS, by_order
 
@@ -72,6 +74,23 @@ def test_hindered_is_what_the_planner_says(run: Any) -> None:
     # a way there in two trips, or more: the earlier ones are not looked up here
     assert (more_s < 1e-6).mean() > 0.85
     assert sum(told) <= 1.15 * sum(planned)
+
+
+def test_the_picture_stacks_the_parts_up_to_the_turnover(run: Any) -> None:
+    figure = Figure()
+    ax = figure.subplots()
+    delays(run.table("delays"), ax)
+    assert [bars.get_label() for bars in ax.containers] == [LABELS[part][0] for part in PARTS]
+    heights = np.array([[bar.get_height() for bar in bars] for bars in ax.containers])
+    bottoms = np.array([[bar.get_y() for bar in bars] for bars in ax.containers])
+    np.testing.assert_allclose(bottoms, np.cumsum(heights, axis=0) - heights, atol=1e-9)
+    each = run.table("delays").groupby("order")[["completed_s", "turnover_s"]].first()
+    edges = np.linspace(each["completed_s"].min(), each["completed_s"].max(), BINS + 1)
+    which = np.searchsorted(edges, each["completed_s"], side="right").clip(1, BINS) - 1
+    means = each["turnover_s"].groupby(which).mean() / 60.0
+    total = heights.sum(axis=0)
+    np.testing.assert_allclose(total[means.index], means)
+    assert total.sum() == pytest.approx(means.sum())  # no bar where no order was completed
 
 
 def test_more_robots_hinder_each_other_more() -> None:

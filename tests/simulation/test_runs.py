@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import gc
+import weakref
+
 import pytest
 from ledger import Ledger
 
-from rmfs import control, layout, scenario, simulate
+from rmfs import Simulation, control, layout, scenario, simulate
 from rmfs.errors import InputError
 from rmfs.observer import Observer
+from rmfs.simulation import loop
 from rmfs.simulation.kernel import Kernel
 
 
@@ -150,3 +154,27 @@ class TestSimulate:
         plan = layout.load("basic")
         with pytest.raises(InputError, match="given as an object"):
             simulate(plan, "basic", "default", overrides=[(["layout", "robots"], 3)])
+
+
+def test_finished_runs_do_not_gather_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full collection, due when enough objects have gathered, frees a run among old objects."""
+    monkeypatch.setattr(loop._Frozen, "objects", 0)
+
+    def finished() -> weakref.ref[Simulation]:
+        simulation = Simulation("small", "small", seed=1, set={"scenario.duration_s": 20})
+        simulation.run()
+        return weakref.ref(simulation)
+
+    gc.disable()
+    try:
+        first = finished()
+        assert first() is not None  # in cycles, hence not freed at once
+        assert loop._Frozen.objects > 0
+        second = finished()
+        assert first() is not None  # too few objects for a collection
+        loop._Frozen.objects = 0
+        finished()
+        assert first() is None
+        assert second() is None
+    finally:
+        gc.enable()
