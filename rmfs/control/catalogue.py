@@ -54,7 +54,7 @@ def _entry(problem: Problem, name: str) -> str:
         lines += ["| parameter | default | meaning |", "|---|---|---|", *rows, ""]
     if controller.decides:
         others = ", ".join(f"`{problem}`" for problem in sorted(controller.decides))
-        lines += [f"Also decides {others}, which must be set to `dummy`.", ""]
+        lines += [f"It also decides {others}, for which `dummy` must be selected.", ""]
     asks = " It asks an optimiser." if controller.optimisers else ""
     lines += [f"Source: `{controller.__module__}`.{asks}", ""]
     return "\n".join(lines)

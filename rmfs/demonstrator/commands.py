@@ -208,7 +208,7 @@ def emulate(
         float, typer.Option(min=0.0, max=0.5, help="Share of messages lost in each direction.")
     ] = 0.01,
     delay_s: Annotated[
-        float, typer.Option(min=0.0, max=1.0, help="Largest delay of a message.")
+        float, typer.Option(min=0.0, max=1.0, help="Largest delay of a message in seconds.")
     ] = 0.04,
     memory: Annotated[
         Path | None,
@@ -217,7 +217,9 @@ def emulate(
     duration_s: Annotated[
         float | None,
         typer.Option(
-            min=0.0, help="End after this time. [default: with the server]", show_default=False
+            min=0.0,
+            help="End after this time in seconds. [default: with the server]",
+            show_default=False,
         ),
     ] = None,
     report: Annotated[

@@ -16,22 +16,24 @@ app = typer.Typer(context_settings={"help_option_names": ["-h", "--help"]})
 @app.command()
 def learn(
     out: Annotated[Path, typer.Option(help="Controllers file to write (.toml).")],
-    layout: Annotated[str, typer.Option(help="Layout.")] = "small",
-    scenario: Annotated[str, typer.Option(help="Scenario.")] = "small",
+    layout: Annotated[str, typer.Option(help="Name of a shipped layout, or a file.")] = "small",
+    scenario: Annotated[str, typer.Option(help="Name of a shipped scenario, or a file.")] = "small",
     controllers: Annotated[
-        str, typer.Option(help="Controllers of the other problems.")
+        str, typer.Option(help="Set of controllers, used for all problems that are not trained.")
     ] = "default",
     problems: Annotated[
-        str, typer.Option(help="Any of poa, pps, psa, ta; with commas.")
+        str, typer.Option(help="Problems to train: any of poa, pps, psa, ta, separated by commas.")
     ] = "poa,pps",
     objective: Annotated[
         str, typer.Option(help="Objective to maximise, as footprint columns: COLUMN=WEIGHT,...")
     ] = "units_picked=1",
-    seeds: Annotated[str, typer.Option(help="Seeds of the runs, with commas.")] = "1,2,3",
-    generations: Annotated[int, typer.Option(min=1, help="Generations.")] = 20,
-    population: Annotated[int, typer.Option(min=4, help="Weight vectors per generation.")] = 10,
+    seeds: Annotated[str, typer.Option(help="Seeds of the runs, separated by commas.")] = "1,2,3",
+    generations: Annotated[int, typer.Option(min=1, help="Number of generations.")] = 20,
+    population: Annotated[
+        int, typer.Option(min=4, help="Number of vectors of weights per generation.")
+    ] = 10,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 1,
-    jobs: Annotated[int, typer.Option(min=1, help="Processes.")] = 1,
+    jobs: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
     set_: SetOption = None,
 ) -> None:
     """Train linear rules by CMA-ES and write a controllers file for `rmfs run`."""
@@ -57,7 +59,10 @@ def learn(
     )
     told = f"Trained by rmfs learn on {layout}, {scenario}: {objective}, seeds {seeds}."
     write_text(out, to_toml(named(found, out.stem, told)))
-    print(f"{out}: {found.value:.6g} (at the start {found.start_value:.6g}), seeds of the training")
+    print(
+        f"{out}: mean objective over the training seeds {found.value:.6g} "
+        f"(default weights: {found.start_value:.6g})"
+    )
 
 
 def _weight(text: str) -> tuple[str, float]:
@@ -70,5 +75,5 @@ def _weight(text: str) -> tuple[str, float]:
 
 def _number(text: str) -> int:
     if not text.strip().isdigit():
-        raise InputError(f"--seeds {text}: must be numbers, 0 or greater, with commas")
+        raise InputError(f"--seeds {text}: must be numbers, 0 or greater, separated by commas")
     return int(text)
