@@ -49,6 +49,10 @@ class RuleError(RuntimeError):
     """
 
 
+class ReplayError(RuntimeError):
+    """A replayed run deviates from the recorded one."""
+
+
 class InternalError(RuntimeError):
     """A defect of rmfs itself, not of its input; the run in which it occurred is unusable.
 

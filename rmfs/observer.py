@@ -57,6 +57,10 @@ class MotionCounts(TravelTimes, Protocol):
         """
         ...
 
+    def plans(self) -> dict[str, NDArray[Any]]:
+        """Return the searches for plans that took simulated time, as columns by name."""
+        ...
+
     def counters(self) -> dict[str, float]:
         """Return counters of path planning by name, and its wall time in s."""
         ...

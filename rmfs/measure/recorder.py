@@ -88,6 +88,8 @@ class Recorder(Observer):
         Trips that ended before the measured time.
     samples
         Per minute: time (s), and the fleet's totals of distance and times since the last reset.
+    plans
+        Searches for plans that took simulated time.
     energy
         Energy drawn by robots.
     packing
@@ -147,6 +149,7 @@ class Recorder(Observer):
         self.heat: dict[str, NDArray[Any]] = {}
         self.trips: dict[str, NDArray[Any]] = {}
         self.edges: dict[str, NDArray[Any]] = {}
+        self.plans: dict[str, NDArray[Any]] = {}
         self.counters: dict[str, float] = {}
         self.early_trips: dict[str, NDArray[Any]] = {}
         self._picked_by = -1
@@ -197,6 +200,7 @@ class Recorder(Observer):
         self.heat = self.traffic.heat()
         self.trips = self.traffic.trips()
         self.edges = self.traffic.edges()
+        self.plans = self.traffic.plans()
         self.counters = self.traffic.counters()
         number_of, seconds = self._disturbances.within(self.start_s, time_s)
         self.counters |= {"disturbances": number_of, "disturbed_s": seconds}

@@ -21,6 +21,7 @@ from rmfs.simulation.idle_rules import IdleRuleWarning, idle_rules
 from rmfs.simulation.inputs import as_overrides, load_inputs, name_of
 from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
+from rmfs.simulation.pacing.planning import let_plans_take_time
 from rmfs.simulation.result import Run
 from rmfs.traffic import Traffic
 
@@ -202,6 +203,8 @@ streams, remark, allow_not_well_formed, traffic_maker
         planner = planner_settings(rules.choices[Problem.PP], seed)
         slow = work.disturbances.slow
         slower = {} if slow is None else {"slow_shares": (slow.speed_share,)}
+        traffic = traffic_maker(plan, record_trace=self.log is not None, planner=planner, **slower)
+        let_plans_take_time(traffic, self.pacing_settings.planning, planner.name)
         super().__init__(
             plan,
             work,
@@ -215,9 +218,7 @@ streams, remark, allow_not_well_formed, traffic_maker
             ],
             outside=outside,
             pacing=_with_answers(self.pacing_settings),
-            traffic=traffic_maker(
-                plan, record_trace=self.log is not None, planner=planner, **slower
-            ),
+            traffic=traffic,
             streams=streams,
         )
 
@@ -256,6 +257,14 @@ streams, remark, allow_not_well_formed, traffic_maker
             If the file is not valid, is damaged, or was written by another version of the code.
         """
         return saving.load(cls, Path(path))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state, unless it could not continue identically."""
+        if self.pacing_settings.planning.mode == "wall":
+            raise InputError(
+                "a run with pacing.planning wall cannot be copied: the copy would take other times"
+            )
+        return super().__getstate__()
 
     def result(self) -> Run:
         """Return the finished run with its footprint, tables and trace.

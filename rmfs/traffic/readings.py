@@ -26,7 +26,8 @@ class Readings:
         `turning_s`, `waiting_s` (standing on the way), `served_s` (standing at a station),
         `idle_s`, `transfer_s` (lifting, setting down) and `riding_s` (elevators) add up to the
         elapsed time. `queueing_s` counts from entering a queue zone to reaching the station and
-        overlaps with the others.
+        overlaps with the others; `awaiting_plan_s`, standing without the plan that the robot needs,
+        is part of `waiting_s`.
         """
         return self._core.motion()
 
@@ -81,7 +82,8 @@ class Readings:
 
         The columns are `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at
         its queue zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of
-        the time from rest to rest), `energy_j` (0 if energy is not counted).
+        the time from rest to rest), `energy_j` (0 if energy is not counted), `awaited_s` (time at
+        its beginning in which the robot waited for its plan).
         """
         return self._core.trips()
 
@@ -127,13 +129,23 @@ class Readings:
 
         They are `plans` (legs), `plan_failures`, `replans`, `refusals` (runs requested by a rolling
         planner that were not free), `improvements`, `expansions`, `cost_tables`, and the wall time
-        `planning_s` in s; and, 0 unless motions can be late, `motions`, `late_motions`, the total
+        `planning_s` in s; 0 unless plans take time, the simulated time `planning_charged_s` that
+        they took; and, 0 unless motions can be late, `motions`, `late_motions`, the total
         `lateness_s`, and `repairs`.
         """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9
+        counts["planning_charged_s"] = counts.pop("charged_us") / 1e6
         counts["lateness_s"] = counts.pop("lateness_us") / 1e6
         return counts
+
+    def plans(self) -> dict[str, NDArray[Any]]:
+        """Return the searches for plans of trips since time zero, if plans take time.
+
+        The columns are `robot`, `asked_us`, `begun_us`, `labels`, `took_us`, `found` and the wall
+        time `wall_s` of the search.
+        """
+        return self._core.plans()
 
     def call_times_s(self) -> NDArray[np.float64]:
         """Return the wall time of each call of the planner since the last reset, in seconds.

@@ -272,6 +272,44 @@ class Traffic(Readings):
         """Draw with another seed from now on; without effect if motions are never late."""
         self._core.reseed_lateness(seed)
 
+    def set_pace(
+        self,
+        price: str,
+        numbers: tuple[float, float] = (0.0, 0.0),
+        *,
+        tape: Sequence[tuple[int, int, int, int]] = (),
+        period_us: int = 0,
+        lazy: bool = False,
+        each: bool = False,
+    ) -> None:
+        """Let plans of trips take time from now on; a robot departs when its plan is there.
+
+        Only for planners that plan trip by trip. A plan is made with the reservations present when
+        a planner begins with it, departs after the time that it takes, and is reserved at once.
+
+        Parameters
+        ----------
+        price
+            `fixed`, `work`, `wall` or `replay`.
+        numbers
+            `fixed`: microseconds per plan. `work`: microseconds per search, and per label. `wall`:
+            simulated time per wall time.
+        tape
+            `replay`: robot, start (us), labels and time taken (us) of each search of another run.
+        period_us
+            Plans are begun only at multiples of this time; 0: at any time.
+        lazy
+            Whether a robot asks only when it could depart, and not while it lifts its pod.
+        each
+            Whether each robot has a planner of its own, not one for all.
+
+        Raises
+        ------
+        ValueError
+            If a time is negative, or there is no such price; then nothing is changed.
+        """
+        self._core.set_pace(price, numbers, list(tape), period_us, lazy, each)
+
     def slow_down(self, robot: int, level: int) -> bool:
         """Reduce the top speed of a robot that stands still, or restore it.
 

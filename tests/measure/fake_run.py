@@ -44,6 +44,7 @@ class FakeTraffic:
             "riding": 0.0,
             "idle": 0.1,
             "queueing": 0.2,
+            "awaiting_plan": 0.05,
         }
         return {
             "distance_m": np.full(2, passed),
@@ -88,6 +89,18 @@ class FakeTraffic:
             "distance_m": np.array([3.0, 4.0, 5.0]),
             "energy_j": np.zeros(3),
             "unhindered_s": np.array([10.0, 15.0, 20.0]),
+            "awaited_s": np.array([0.0, 2.0, 1.0]),
+        }
+
+    def plans(self) -> dict[str, np.ndarray]:
+        return {
+            "robot": np.array([1, 0]),
+            "asked_us": np.array([130, 200]) * 10**6,
+            "begun_us": np.array([131, 200]) * 10**6,
+            "labels": np.array([12, 5]),
+            "took_us": np.array([1, 1]) * 10**6,
+            "found": np.array([True, True]),
+            "wall_s": np.array([2e-5, 1e-5]),
         }
 
     def counters(self) -> dict[str, float]:
@@ -97,6 +110,7 @@ class FakeTraffic:
             "replans": 1,
             "expansions": 99,
             "cost_tables": 3,
+            "planning_charged_s": 2.0,
             "planning_s": 0.25,
             "late_motions": 3,
             "lateness_s": 7.5,

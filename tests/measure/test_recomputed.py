@@ -50,6 +50,9 @@ NOT_IN_TABLES = {
     "units_per_h_bound": "not of the run but of its warehouse: tests/solvers/test_run_bounds.py",
     "collisions": "found by the checker: tests/measure/test_checker_*.py",
     **dict.fromkeys(("plans", "plan_failures", "replans", "expansions"), "counted by traffic"),
+    **dict.fromkeys(
+        ("planning_charged_s", "plan_wait_s"), "0 here; tests/simulation/test_planning_time.py"
+    ),
     **dict.fromkeys(("order_redraws", "orders_short"), "counted when an order is drawn, or comes"),
     **dict.fromkeys(("disturbances", "disturbed_s"), "tests/simulation/test_disturbances.py"),
     **dict.fromkeys(

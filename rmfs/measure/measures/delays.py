@@ -12,7 +12,10 @@ from rmfs.measure.tables.delays import PARTS, by_order
 if TYPE_CHECKING:
     from rmfs.measure.ended import EndedRun
 
-_LESS = ("drive_hindered", "queue", "wait_assignment", "wait_pod", "wait_robot", "wait_order")
+_LESS = (
+    *("drive_hindered", "queue", "wait_assignment", "wait_pod", "wait_robot", "wait_plan"),
+    "wait_order",
+)
 
 
 class Delays(Measure):

@@ -30,6 +30,21 @@ class Planning(Measure):
             "Labels (partial routes) expanded in searches for routes",
         ),
         Column(
+            "planning_charged_s",
+            REAL,
+            "s",
+            "Simulated time that planners took for plans of trips; 0 if plans take no time",
+            better=LESS,
+        ),
+        Column(
+            "plan_wait_s",
+            REAL,
+            "s",
+            "Robot time standing without the plan that the robot needs, part of "
+            "robot_waiting_share; 0 if plans take no time",
+            better=LESS,
+        ),
+        Column(
             "planning_wall_s",
             REAL,
             "s",
@@ -45,6 +60,8 @@ class Planning(Measure):
         names = ("plans", "plan_failures", "replans", "expansions")
         return {
             **{name: int(counters[name]) for name in names},
+            "planning_charged_s": counters["planning_charged_s"],
+            "plan_wait_s": float(run.recorder.motion["awaiting_plan_s"].sum()),
             "planning_wall_s": counters["planning_s"],
         }
 

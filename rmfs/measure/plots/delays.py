@@ -18,6 +18,7 @@ LABELS = {
     "wait_assignment": ("waiting for a station", colours.STATES["idle"], ""),
     "wait_pod": ("waiting for a pod", colours.FREE_STORAGE, ""),
     "wait_robot": ("waiting for a robot", colours.STORAGE, ""),
+    "wait_plan": ("waiting for a plan", colours.QUEUE_ZONE, "\\\\"),
     "drive_free": ("driving", colours.STATES["driving"], ""),
     "drive_hindered": ("hindered by others", colours.STATES["waiting"], "//"),
     "queue": ("queueing", colours.STATES["queueing"], ""),

@@ -27,8 +27,10 @@ from rmfs.measure.tables.handled import picks as picks
 from rmfs.measure.tables.handled import visits as visits
 from rmfs.measure.tables.logs import Logs as Logs
 from rmfs.measure.tables.motion import HEAT as HEAT
+from rmfs.measure.tables.motion import PLANS as PLANS
 from rmfs.measure.tables.motion import TRIPS as TRIPS
 from rmfs.measure.tables.motion import heat as heat
+from rmfs.measure.tables.motion import plans as plans
 from rmfs.measure.tables.motion import trips as trips
 from rmfs.measure.tables.order_lines import ORDER_LINES as ORDER_LINES
 from rmfs.measure.tables.order_lines import order_lines as order_lines
@@ -75,6 +77,7 @@ MAKERS = {
     "bundle_lines": bundle_lines,
     "visits": visits,
     "trips": trips,
+    "plans": plans,
     "connections": connections,
     "robots": robots,
     "pods": pods,
@@ -102,6 +105,7 @@ DECLARED: dict[str, Sequence[Column]] = {
     "bundle_lines": BUNDLE_LINES,
     "visits": VISITS,
     "trips": TRIPS,
+    "plans": PLANS,
     "connections": CONNECTIONS,
     "robots": ROBOTS,
     "pods": PODS,

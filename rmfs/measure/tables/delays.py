@@ -32,6 +32,7 @@ PARTS = {
     "wait_assignment": "waiting for POA to assign the order to a station",
     "wait_pod": "waiting for a pod to be chosen while some robot was at rest",
     "wait_robot": "waiting for a pod to be chosen while all robots had work",
+    "wait_plan": "waiting for the planner before these drives, if plans take time",
     "drive_free": "driving to the pod and with it to the queue zone, lifting included, in the "
     "time that this takes without other robots",
     "drive_hindered": "additional time of these drives because of other robots",
@@ -69,8 +70,9 @@ def delays(logs: Logs) -> pd.DataFrame:
     lifted = np.clip(moments.lift, begun, handled)
     queued = np.clip(moments.queue, lifted, handled)
     arrived = np.clip(moments.visit, queued, handled)
-    hindered = moments.to_pod.hindered(begun, lifted)
-    hindered += moments.to_station.hindered(lifted, queued)
+    drives = ((moments.to_pod, begun, lifted), (moments.to_station, lifted, queued))
+    awaited = sum(drive.awaited(since, until) for drive, since, until in drives)
+    hindered = sum(drive.hindered(since, until) for drive, since, until in drives)
     at_rest = _time_at_rest(logs, begun) - _time_at_rest(logs, assigned)
     at_rest = np.clip(at_rest, 0.0, begun - assigned)
     return tidy(
@@ -86,7 +88,8 @@ def delays(logs: Logs) -> pd.DataFrame:
             "wait_assignment_s": assigned - created,
             "wait_pod_s": at_rest,
             "wait_robot_s": (begun - assigned) - at_rest,
-            "drive_free_s": (queued - begun) - hindered,
+            "wait_plan_s": awaited,
+            "drive_free_s": (queued - begun) - hindered - awaited,
             "drive_hindered_s": hindered,
             "queue_s": arrived - queued,
             "service_s": handled - arrived,
@@ -175,15 +178,23 @@ class _Drives:
     ) -> None:
         own = trips["kind"] == kind
         found = _last_row(trips["robot"][own], trips["end_s"][own], robot, to_s)
-        begin, end, unhindered = (
-            np.append(trips[name][own], 0.0)[found] for name in ("start_s", "end_s", "unhindered_s")
+        begin, end, unhindered, awaited = (
+            np.append(trips[name][own], 0.0)[found]
+            for name in ("start_s", "end_s", "unhindered_s", "awaited_s")
         )
         there = (found >= 0) & (end >= from_s)
         self._from = from_s
         self._begin = np.where(there, np.maximum(begin, from_s), from_s)
         self.end = np.where(there, end, from_s)
         self._unhindered = np.where(there, unhindered, 0.0)
+        self._planned = np.where(there, np.maximum(begin + awaited, self._begin), self._begin)
         self._is_to_pod = kind == _TO_POD
+
+    def awaited(self, from_s: Floats, to_s: Floats) -> Floats:
+        """Return the part of a time interval in which each robot waited for its plan."""
+        awaited = np.minimum(self._planned, to_s) - np.maximum(self._begin, from_s)
+        clipped: Floats = np.clip(awaited, 0.0, to_s - from_s)
+        return clipped
 
     def hindered(self, from_s: Floats, to_s: Floats) -> Floats:
         """Return the hindered time of the part of each drive that lies in a time interval.
@@ -194,9 +205,12 @@ class _Drives:
         since = self._from if self._is_to_pod else self._begin
         until = to_s if self._is_to_pod else self.end
         whole = np.maximum(until - self._from, 0.0)
-        late = np.clip(until - since - self._unhindered, 0.0, whole)
+        awaited = self._planned - self._begin
+        late = np.clip(until - since - self._unhindered - awaited, 0.0, whole)
         share = np.divide(to_s - from_s, whole, out=np.zeros_like(whole), where=whole > 0)
-        return np.clip(late * np.minimum(share, 1.0), 0.0, to_s - from_s)
+        most = to_s - from_s - self.awaited(from_s, to_s)
+        clipped: Floats = np.clip(late * np.minimum(share, 1.0), 0.0, most)
+        return clipped
 
 
 def _last(

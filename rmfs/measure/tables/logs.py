@@ -109,6 +109,7 @@ class Logs:
             "start_s": whole["t0_us"] / 1e6,
             "end_s": whole["t1_us"] / 1e6,
             "unhindered_s": whole["unhindered_s"],
+            "awaited_s": whole["awaited_s"],
         }
 
     @cached_property

@@ -40,10 +40,28 @@ TRIPS = (
         "hindered_s",
         REAL,
         "s",
-        "end_s - start_s - unhindered_s: delay by other robots; slightly negative for some trips "
-        "to stations, since robots do not stop at the border of the queue zone",
+        "end_s - start_s - unhindered_s: delay by other robots, and by planning if plans take "
+        "time; slightly negative for some trips to stations, since robots do not stop at the "
+        "border of the queue zone",
+    ),
+    Column(
+        "awaited_s",
+        REAL,
+        "s",
+        "Part of hindered_s at the beginning of the trip in which the robot waited for its plan; 0 "
+        "if plans take no time",
     ),
     Column("energy_wh", REAL, "Wh", "Energy drawn on the trip; empty if energy is not modelled"),
+)
+
+PLANS = (
+    Column("robot", INTEGER, "", "Robot"),
+    Column("asked_us", INTEGER, "us", "When the robot asked for a plan"),
+    Column("begun_us", INTEGER, "us", "When a planner began the search"),
+    Column("labels", INTEGER, "labels", "Labels (partial routes) expanded in the search"),
+    Column("took_us", INTEGER, "us", "Simulated time that the search took"),
+    Column("found", FLAG, "", "Whether it found a route"),
+    Column("wall_s", REAL, "s", "Wall time of the search", measured=True),
 )
 
 _PURPOSES = {
@@ -94,9 +112,16 @@ def trips(logs: Logs) -> pd.DataFrame:
             "distance_m": told["distance_m"],
             "unhindered_s": told["unhindered_s"],
             "hindered_s": (told["t1_us"] - told["t0_us"]) / 1e6 - told["unhindered_s"],
+            "awaited_s": told["awaited_s"],
             "energy_wh": told["energy_j"] / WH if logs.recorder.energy.final else np.nan,
         },
     )
+
+
+def plans(logs: Logs) -> pd.DataFrame:
+    """Make a row per search for the plan of a trip, warm-up included; empty if it takes no time."""
+    told = logs.recorder.plans
+    return tidy("plans", PLANS, {column.name: told[column.name] for column in PLANS})
 
 
 def heat(logs: Logs) -> pd.DataFrame:

@@ -39,6 +39,12 @@ ROBOTS = (
             "queueing": "from a queue zone's border to its station (overlaps with the others)",
         }.items()
     ),
+    Column(
+        "awaiting_plan_s",
+        REAL,
+        "s",
+        "Time standing on the way without the plan that it needs (part of waiting_s)",
+    ),
     *(
         column
         for task in ("pick", "replenish", "park", "reposition", "rest")
@@ -79,6 +85,7 @@ def robots(logs: Logs) -> pd.DataFrame:
         "distance_m": motion["distance_m"],
         "loaded_distance_m": motion["loaded_distance_m"],
         **{f"{state}_s": motion[f"{state}_s"] for state in STATES},
+        "awaiting_plan_s": motion["awaiting_plan_s"],
     }
     tasks = logs.tasks
     measured = (tasks["end_s"] - tasks["begin_s"].clip(lower=logs.start_s)).clip(lower=0.0)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
+from rmfs.errors import ReplayError as ReplayError
+
 
 class OptimiserError(RuntimeError):
     """An optimiser failed in a reproducible run, where falling back to the rule would hide it."""
-
-
-class ReplayError(RuntimeError):
-    """A replayed run deviates from the recorded one."""

@@ -15,12 +15,15 @@ from rmfs.config import Model, Table
 from rmfs.errors import InputError
 from rmfs.scenario.distributions import Popularity as Distribution
 from rmfs.scenario.quantities import NotNegative, Positive
+from rmfs.simulation.pacing.planning import InstantPlanning, PlanningSettings, planning_settings
 
 
 class _Mode(Model):
     model_config = pydantic.ConfigDict(
         extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True
     )
+    planning: PlanningSettings = InstantPlanning()
+    """Time that path planning takes."""
 
 
 class InstantPacing(_Mode):
@@ -96,7 +99,8 @@ def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) 
     mode
         `instant`, `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR`.
     overrides
-        Pairs of path and value for its parameters, such as `(["speed"], 2.0)`.
+        Pairs of path and value for its parameters, such as `(["speed"], 2.0)`; a path that begins
+        with `planning` is one of path planning.
 
     Raises
     ------
@@ -113,7 +117,11 @@ def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) 
         if name not in _ARGUMENTS:
             raise InputError(f"pacing {mode}: {name} takes no value after =")
         table[_ARGUMENTS[name]] = argument
-    table = config.apply_overrides(table, list(overrides))
+    own = [(path, value) for path, value in overrides if path[0] != "planning"]
+    table = config.apply_overrides(table, own)
+    table["planning"] = planning_settings(
+        [(path[1:], value) for path, value in overrides if path[0] == "planning"]
+    )
     wanted = _ARGUMENTS.get(name, "")
     if wanted and wanted not in table:
         raise InputError(f"pacing {mode}: must have a value, as in {name}={_EXAMPLES[name]}")

@@ -53,6 +53,8 @@ pub struct Totals {
     pub riding: Us,
     /// From entering a queue zone to reaching its head; overlaps with the others.
     pub queueing: Us,
+    /// Standing without the plan it needs; part of `waiting`.
+    pub awaiting: Us,
 }
 
 impl Totals {
@@ -70,6 +72,7 @@ impl Totals {
             transferring: self.transferring + factor * other.transferring,
             riding: self.riding + factor * other.riding,
             queueing: self.queueing + factor * other.queueing,
+            awaiting: self.awaiting + factor * other.awaiting,
         }
     }
 }
@@ -89,6 +92,8 @@ pub struct Trip {
     /// J drawn, less what braking returned; for a station, up to its head; 0 if energy is not
     /// counted.
     pub energy: f64,
+    /// Time at its beginning in which the robot waited for its plan.
+    pub awaited: Us,
 }
 
 /// Purpose of a trip.
@@ -154,6 +159,13 @@ impl Record {
     /// Time up to which the robot's motion is recorded.
     pub fn recorded(&self, robot: u32) -> Us {
         self.recorded[robot as usize]
+    }
+
+    /// Counts the part of a standing time until `end` in which the robot had no plan.
+    pub fn await_plan(&mut self, robot: u32, end: Us, awaits: (Us, Us)) {
+        let begin = self.recorded[robot as usize].max(awaits.0);
+        let awaiting = &mut self.totals[robot as usize].awaiting;
+        *awaiting += (end.min(awaits.1) - begin).max(0);
     }
 
     /// Records that the robot stood still until `end`.

@@ -39,6 +39,8 @@ pub enum Phase {
     Blocked,
     /// At rest until a lift or set-down ends.
     Transferring,
+    /// Needs to drive and waits for its turn with a planner.
+    Planning,
 }
 
 /// An occupation in the reservation table that belongs to the robot.
@@ -75,6 +77,8 @@ pub struct Robot {
     pub place: Option<(u32, usize)>,
     /// Changes whenever the plan changes, so that events of old plans are recognised.
     pub version: u32,
+    /// When it began to stand without the plan it needs, and when the plan is there.
+    pub awaits: (Us, Us),
 }
 
 impl Robot {
@@ -95,6 +99,7 @@ impl Robot {
             transfer_end: 0,
             place: None,
             version: 0,
+            awaits: (0, 0),
         }
     }
 

@@ -8,6 +8,7 @@ use crate::robot::{Phase, Step};
 use crate::search::{End, Guide, Outcome, Query};
 use crate::units::{FOREVER, Us};
 
+use super::pace::Reply;
 use super::{Due, Fleet};
 
 /// Time between two attempts of a robot that found no way.
@@ -46,7 +47,7 @@ impl Fleet {
                 continue;
             }
             if concerns(self, robot) {
-                if !self.plan_step(robot) {
+                if self.ask_for_plan(robot, true) == Reply::NoWay {
                     self.step_aside(robot);
                     self.robots[robot as usize].phase = Phase::Blocked;
                     self.blocked.push(robot);

@@ -11,6 +11,7 @@ mod energy;
 mod improve;
 mod late;
 mod lateness;
+mod pace;
 mod planning;
 mod programs;
 mod progress;
@@ -22,6 +23,7 @@ mod saved;
 pub use closing::CutOff;
 pub use late::Shift;
 pub use lateness::Lateness;
+pub use pace::{Entry, Pace, Price};
 pub use regroup::Rest;
 
 use std::cmp::Reverse;
@@ -85,6 +87,8 @@ enum Due {
     Motion,
     /// A motion has begun.
     NextMotion,
+    /// A planner can begin with the next robot; see `pace.rs`.
+    Plan,
 }
 
 /// Counters of planning.
@@ -103,6 +107,8 @@ pub struct Counters {
     pub lateness: u64,
     /// Plans replaced because another robot was late.
     pub repairs: u64,
+    /// Simulated time that plans took.
+    pub charged: u64,
     /// Wall time spent planning.
     pub planning: Duration,
     /// Wall time of each call of the planner, in nanoseconds.
@@ -127,6 +133,8 @@ struct Leg {
     energy_before: f64,
     /// When the robot reached the queue zone of the station it drives to.
     zone_entered: Option<Us>,
+    /// Time at its beginning in which the robot waited for its plan.
+    awaited: Us,
 }
 
 /// The traffic of one warehouse.
@@ -149,6 +157,8 @@ pub struct Fleet {
     rolling: Option<Rolling>,
     /// Lateness of motions, if they can be late.
     lateness: Option<Lateness>,
+    /// What plans cost in time, if they take any.
+    pub pace: Option<Pace>,
     /// Robots with a place in each station's queue, in the order of their places.
     queues: Vec<Vec<u32>>,
     legs: Vec<Option<Leg>>,
@@ -194,6 +204,7 @@ impl Fleet {
             per_leg,
             rolling,
             lateness: None,
+            pace: None,
             costs: Cache::new(&network, &kinds, cost_bytes),
             table: Table::new(network.resources),
             stored: vec![false; network.nodes],
@@ -254,6 +265,10 @@ impl Fleet {
             return Err(format!("robot {robot} is driving and cannot lift or set down"));
         }
         state.program = VecDeque::from(program.to_vec());
+        state.awaits = (0, 0);
+        if let Some(pace) = &mut self.pace {
+            pace.withdraw(robot);
+        }
         self.begin(robot);
         Ok(())
     }
@@ -305,6 +320,7 @@ impl Fleet {
                 Due::Depart => self.departure_due(robot, version),
                 Due::Call => self.call_planner(),
                 Due::Motion => self.motion_due(robot, version),
+                Due::Plan => self.planners_due(),
                 Due::NextMotion => self.next_motion_due(robot, version),
                 Due::Retry => {
                     self.retry_due = false;

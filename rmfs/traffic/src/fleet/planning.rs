@@ -9,10 +9,11 @@ use crate::planner::{Agent, Answer, Scene};
 use crate::postpone::postpone;
 use crate::record::enters_zone;
 use crate::reservations::Interval;
-use crate::robot::Phase;
+use crate::robot::{Phase, Robot};
 use crate::search::Move;
 use crate::units::Us;
 
+use super::pace::{departure, stop_for};
 use super::{Due, EventKind, Fleet, Leg};
 
 /// Effort of the search for a plan.
@@ -45,7 +46,7 @@ impl Fleet {
 
     fn plan_untimed(&mut self, robot: u32, goal: u32, effort: Effort, keep: usize) -> bool {
         self.settle(robot);
-        let Fleet { network, kinds, robots, table, pathfinder, costs, per_leg, .. } = self;
+        let Fleet { network, kinds, robots, table, pathfinder, costs, per_leg, pace, .. } = self;
         let state = &robots[robot as usize];
         let kind = &kinds[state.kind as usize];
         let holder = table.final_holder(network.resource[goal as usize]);
@@ -53,28 +54,54 @@ impl Fleet {
             self.counters.failures += 1;
             return false;
         }
-        let kept = state.committed(network, kind, self.now).max(keep);
-        let (start, heading, rested) = match kept.checked_sub(1) {
-            Some(last) => (state.moves[last].to, state.moves[last].heading, state.moves[last].end),
-            None => (state.anchor, state.heading, state.rested),
-        };
-        let ready = rested.max(self.now).max(state.busy_until);
-        let agent = Agent {
-            robot,
-            kind: state.kind,
-            start,
-            heading,
-            ready,
-            goal,
-            loaded: state.pod.is_some(),
-            effort: effort.labels(),
-            needs_plan: true,
+        let mut kept = state.committed(network, kind, self.now).max(keep);
+        let agent_after = |kept: usize, not_before: Us| {
+            let (start, heading, rested) = stop_after(state, kept);
+            Agent {
+                robot,
+                kind: state.kind,
+                start,
+                heading,
+                ready: rested.max(self.now).max(state.busy_until).max(not_before),
+                goal,
+                loaded: state.pod.is_some(),
+                effort: effort.labels(),
+                needs_plan: true,
+            }
         };
         for held in &state.held {
             table.remove(held.resource, robot);
         }
-        let mut scene = Scene { now: self.now, network, kinds, robots, table, pathfinder, costs };
-        let answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
+        let now = self.now;
+        let mut pace = pace.as_mut().filter(|pace| pace.turn_of(robot).is_some());
+        if let Some(pace) = &pace {
+            kept = stop_for(network, table, state, now, kept, now + pace.known());
+        }
+        let in_turn = pace.is_some();
+        let mut agent = agent_after(kept, now);
+        let (begun, labels) = (Instant::now(), pathfinder.expansions);
+        let mut scene = Scene { now, network, kinds, robots, table, pathfinder, costs };
+        let mut answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
+        let mut awaited = 0;
+        let mut could_depart = agent.ready;
+        if let Some(pace) = &mut pace {
+            let labels = pathfinder.expansions - labels;
+            let found = matches!(answer, Some(Answer::Way(_)));
+            let until = now + pace.charge(now, labels, begun.elapsed(), found);
+            if let Some(Answer::Way(moves)) = &answer
+                && departure(network, kind, moves) < until
+            {
+                // its plan is there later than it departs: the search is repeated from then on
+                kept = stop_for(network, table, state, now, kept, until);
+                agent = agent_after(kept, until);
+                let mut scene = Scene { now, network, kinds, robots, table, pathfinder, costs };
+                answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
+            }
+            let turn = pace.turn_of(robot).expect("its turn");
+            could_depart = turn.could_depart(stop_after(state, kept).2);
+            awaited = (until - could_depart).max(0);
+        }
+        let (start, heading) = (agent.start, agent.heading);
         let Some(Answer::Way(mut moves)) = answer else {
             self.counters.failures += 1;
             self.reserve(robot);
@@ -90,14 +117,18 @@ impl Fleet {
             self.counters.plans += 1;
             self.legs[robot as usize] = Some(Leg {
                 from: start,
-                start: ready,
+                start: could_depart,
                 unhindered,
                 distance_before: self.record.totals[robot as usize].distance,
                 energy_before: self.record.used(robot),
                 zone_entered: None,
+                awaited,
             });
         } else {
             self.counters.replans += 1;
+        }
+        if in_turn {
+            self.robots[robot as usize].awaits = (could_depart, could_depart + awaited);
         }
         self.adopt(robot, kept, moves);
         if departs && self.network.storage[start as usize] {
@@ -136,6 +167,14 @@ impl Fleet {
                 self.table.insert(held.resource, interval, self.now);
             }
         }
+    }
+}
+
+/// Where a robot stands after some of its moves, with heading and time.
+fn stop_after(state: &Robot, kept: usize) -> (u32, u8, Us) {
+    match kept.checked_sub(1) {
+        Some(last) => (state.moves[last].to, state.moves[last].heading, state.moves[last].end),
+        None => (state.anchor, state.heading, state.rested),
     }
 }
 

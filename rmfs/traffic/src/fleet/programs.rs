@@ -6,6 +6,7 @@ use crate::record::{Piece, Trip, TripKind};
 use crate::robot::{Phase, Step};
 use crate::units::Us;
 
+use super::pace::Reply;
 use super::planning::Effort;
 use super::{Due, EventKind, Fleet};
 
@@ -30,7 +31,12 @@ impl Fleet {
         if self.rolling.is_some() {
             return self.set_off_rolling(robot);
         }
-        if !self.plan_step(robot) {
+        let state = &mut self.robots[robot as usize];
+        if self.pace.is_some() && state.phase == Phase::Transferring {
+            // its lift or set-down has ended
+            state.phase = Phase::Planning;
+        }
+        if self.ask_for_plan(robot, false) == Reply::NoWay {
             self.wait_for_a_way(robot);
         }
     }
@@ -63,7 +69,11 @@ impl Fleet {
         // plan ahead, so that the robot leaves the moment it has its pod
         let state = &mut self.robots[robot as usize];
         let drives_on = matches!(state.program.get(1), Some(Step::Drive(_) | Step::Station(_)));
-        if drives_on && self.rolling.is_none() {
+        if let Some(pace) = &self.pace {
+            if drives_on && !pace.lazy {
+                self.ask_for_plan(robot, false);
+            }
+        } else if drives_on && self.rolling.is_none() {
             let step = state.program.pop_front().expect("the lift");
             self.plan_step(robot);
             let state = &mut self.robots[robot as usize];
@@ -205,6 +215,7 @@ impl Fleet {
             distance: self.record.totals[robot as usize].distance - leg.distance_before,
             unhindered: leg.unhindered,
             energy: self.record.used(robot) - leg.energy_before,
+            awaited: leg.awaited.min(end - leg.start.min(end)),
         });
     }
 }

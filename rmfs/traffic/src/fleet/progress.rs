@@ -29,6 +29,9 @@ impl Fleet {
                 self.network.headings[step.heading_before as usize],
                 self.network.headings[step.heading as usize],
             );
+            if matches!(why, Standing::Waiting(_)) {
+                self.record.await_plan(robot, step.start - turn, state.awaits);
+            }
             self.record.stand(
                 robot,
                 step.start - turn,
@@ -51,7 +54,8 @@ impl Fleet {
             state.heading = step.heading;
             state.rested = step.end;
         }
-        if state.phase == Phase::Transferring {
+        // while it lifts, its plan for afterwards may be made
+        if state.phase == Phase::Transferring || state.transfer_end > now {
             self.stand_until_transfer(robot);
             return;
         }
@@ -65,6 +69,9 @@ impl Fleet {
             }
             None => now,
         };
+        if matches!(why, Standing::Waiting(_)) {
+            self.record.await_plan(robot, standing_until, state.awaits);
+        }
         self.record.stand(robot, standing_until, state.anchor, state.heading, state.pod, why);
     }
 

@@ -121,7 +121,7 @@ impl Fleet {
         if changed {
             self.robots[robot as usize].place = Some((station, place));
         }
-        if phase == Phase::Transferring {
+        if matches!(phase, Phase::Transferring | Phase::Planning) {
             self.robots[robot as usize].phase = phase;
         }
         changed

@@ -124,7 +124,7 @@ impl Fleet {
             if let Some((station, _)) = self.robots[robot as usize].place.take() {
                 self.queues[station as usize].retain(|&other| other != robot);
             }
-            if phase == Phase::Transferring {
+            if matches!(phase, Phase::Transferring | Phase::Planning) {
                 continue;
             }
             if self.rolling.is_some() {

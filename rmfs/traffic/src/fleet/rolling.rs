@@ -404,6 +404,7 @@ impl Fleet {
             distance_before: self.record.totals[robot as usize].distance,
             energy_before: self.record.used(robot),
             zone_entered: None,
+            awaited: 0,
         });
     }
 }

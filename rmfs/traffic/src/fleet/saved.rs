@@ -17,13 +17,13 @@ use crate::robot::Robot;
 use crate::units::Us;
 
 use super::rolling::Wishes;
-use super::{Counters, Due, Event, Fleet, Lateness, Leg};
+use super::{Counters, Due, Event, Fleet, Lateness, Leg, Pace};
 
 /// First bytes of a saved fleet.
 const MAGIC: &[u8] = b"rmfs-traffic";
 
 /// Version of the format.
-const VERSION: u8 = 5;
+const VERSION: u8 = 6;
 
 type Agenda = BinaryHeap<Reverse<(Us, u32, Due, u32)>>;
 
@@ -48,6 +48,7 @@ struct Saved<'a> {
     per_leg: Vec<u8>,
     rolling: Option<(Cow<'a, Wishes>, Vec<u8>)>,
     lateness: Cow<'a, Option<Lateness>>,
+    pace: Cow<'a, Option<Pace>>,
     costs: Known,
     expansions: u64,
     counters: Cow<'a, Counters>,
@@ -83,6 +84,7 @@ impl Fleet {
                 .map(|own| remembered(own).map(|bytes| (Cow::Borrowed(&own.wishes), bytes)))
                 .transpose()?,
             lateness: Cow::Borrowed(&self.lateness),
+            pace: Cow::Borrowed(&self.pace),
             costs: self.costs.known(),
             expansions: self.pathfinder.expansions,
             counters: Cow::Borrowed(&self.counters),
@@ -139,6 +141,7 @@ impl Fleet {
         self.agenda = saved.agenda.into_owned();
         self.outbox = saved.outbox.into_owned();
         self.lateness = saved.lateness.into_owned();
+        self.pace = saved.pace.into_owned();
         self.costs.remember(saved.costs);
         self.pathfinder.expansions = saved.expansions;
         self.counters = saved.counters.into_owned();

@@ -89,8 +89,21 @@ fn heed_signals() {
 
 /// The error that Python sees.
 pub(super) fn internal_error(message: &str) -> PyErr {
+    error_of("InternalError", message)
+}
+
+/// The error about a plan that a recorded run does not have.
+pub(super) fn replay_error(plan: &str) -> PyErr {
+    let message = format!(
+        "{plan} was another one in the recorded run: layout, scenario, controllers, seed, settings \
+         of planning or version differ"
+    );
+    error_of("ReplayError", &message)
+}
+
+fn error_of(name: &str, message: &str) -> PyErr {
     Python::attach(|py| {
-        let class = py.import("rmfs.errors").and_then(|errors| errors.getattr("InternalError"));
+        let class = py.import("rmfs.errors").and_then(|errors| errors.getattr(name));
         class
             .and_then(|class| class.call1((message,)))
             .map_or_else(|error| error, PyErr::from_value)

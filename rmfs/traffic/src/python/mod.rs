@@ -16,14 +16,14 @@ use pyo3::types::{PyBytes, PyDict};
 
 use crate::costs;
 use crate::energy::{Battery, Energy, Model, Spent};
-use crate::fleet::{CutOff, Event, Fleet, Lateness, Rest, Shift};
+use crate::fleet::{CutOff, Entry, Event, Fleet, Lateness, Pace, Price, Rest, Shift};
 use crate::kinematics::Kind;
 use crate::network::{Network, Plan, Ride};
 use crate::planner::{Planner, Rhythm, Settings, build};
 use crate::robot::Step;
 use crate::units::{Us, from_radians, to_radians};
 
-use guard::{guarded, internal_error};
+use guard::{guarded, internal_error, replay_error};
 use motion::Motion;
 use planner::{Along, Conflict, Fault, PlannerInPython, Reserved, Search, Way};
 use sequences::Sequences;
@@ -102,6 +102,12 @@ impl Core {
     fn robot(&self, robot: usize) -> PyResult<&crate::robot::Robot> {
         let missing = || PyValueError::new_err(format!("no robot {robot}"));
         self.fleet.robots.get(robot).ok_or_else(missing)
+    }
+
+    /// Raises an error if the run is not that of the tape of plans.
+    fn check_tape(&self) -> PyResult<()> {
+        let fault = self.fleet.pace.as_ref().and_then(|pace| pace.fault.as_ref());
+        fault.map_or(Ok(()), |told| Err(replay_error(told)))
     }
 
     fn check_place(&self, waypoint: u32, kind: u8) -> PyResult<()> {
@@ -213,7 +219,8 @@ impl Core {
     fn command(&mut self, robot: u32, program: Vec<(u8, u32)>) -> PyResult<()> {
         self.robot(robot as usize)?;
         let steps = program.into_iter().map(step_of).collect::<PyResult<Vec<Step>>>()?;
-        self.try_with(|fleet| fleet.command(robot, &steps))
+        self.try_with(|fleet| fleet.command(robot, &steps))?;
+        self.check_tape()
     }
 
     fn advance(&mut self, py: Python<'_>, until: Us) -> PyResult<Vec<(Us, i64, u32, u32)>> {
@@ -221,6 +228,7 @@ impl Core {
         if let Some(error) = self.fault.lock().ok().and_then(|mut fault| fault.take()) {
             return Err(error);
         }
+        self.check_tape()?;
         let plain = |event: Event| (event.time, event.kind as i64, event.robot, event.value);
         Ok(events.into_iter().map(plain).collect())
     }
@@ -394,6 +402,7 @@ impl Core {
             ("late_motions", fleet.counters.late_motions),
             ("lateness_us", fleet.counters.lateness),
             ("repairs", fleet.counters.repairs),
+            ("charged_us", fleet.counters.charged),
             ("expansions", fleet.pathfinder.expansions),
             ("cost_tables", fleet.costs.computed),
             ("planning_ns", fleet.counters.planning.as_nanos() as u64),
@@ -469,6 +478,49 @@ impl Core {
     /// Draws the lateness of motions from another seed from now on.
     fn reseed_lateness(&mut self, seed: u64) -> PyResult<()> {
         self.with(|fleet| fleet.reseed_lateness(seed))
+    }
+
+    /// Lets plans of trips take time: constant (us), share of the wall time, us per search and per
+    /// label, or a tape; us between batches, whether robots ask only when they could depart, and
+    /// whether each robot has a planner of its own.
+    #[pyo3(signature = (price, numbers, tape, period, lazy, each))]
+    fn set_pace(
+        &mut self,
+        price: &str,
+        numbers: (f64, f64),
+        tape: Vec<(u32, Us, u64, Us)>,
+        period: Us,
+        lazy: bool,
+        each: bool,
+    ) -> PyResult<()> {
+        let (first, second) = numbers;
+        if !(first >= 0.0 && second >= 0.0 && period >= 0) {
+            return Err(PyValueError::new_err("times of plans must not be negative"));
+        }
+        let entry = |(robot, begun, labels, took)| Entry {
+            robot,
+            asked: begun,
+            begun,
+            labels,
+            took,
+            found: true,
+            wall: 0,
+        };
+        let price = match price {
+            "fixed" => Price::Fixed(first.round() as Us),
+            "work" => Price::Work { search: first, label: second },
+            "wall" => Price::Wall(first),
+            "replay" => Price::Tape(tape.into_iter().map(entry).collect()),
+            other => return Err(PyValueError::new_err(format!("no price of plans {other}"))),
+        };
+        let planners = if each { self.fleet.robots.len() } else { 1 };
+        self.with(|fleet| fleet.set_pace(Pace::new(price, period, lazy, planners)))
+    }
+
+    /// Searches for plans of trips since time zero, if plans take time.
+    fn plans<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let entries = self.fleet.pace.iter().flat_map(|pace| pace.entries.iter());
+        tables::plans(py, &entries.cloned().collect::<Vec<Entry>>())
     }
 
     fn change_kind(&mut self, robot: u32, kind: u8) -> PyResult<bool> {

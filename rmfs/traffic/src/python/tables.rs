@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::energy::{Energy, Spent};
+use crate::fleet::Entry;
 use crate::heat::{Heat, Passages};
 use crate::log::Log;
 use crate::network::Network;
@@ -47,7 +48,8 @@ pub(super) fn motion<'py>(py: Python<'py>, totals: &[Totals]) -> Table<'py> {
         .column("idle_s", |t| seconds(t.idle))?
         .column("transfer_s", |t| seconds(t.transferring))?
         .column("riding_s", |t| seconds(t.riding))?
-        .column("queueing_s", |t| seconds(t.queueing))?;
+        .column("queueing_s", |t| seconds(t.queueing))?
+        .column("awaiting_plan_s", |t| seconds(t.awaiting))?;
     Ok(columns.dict)
 }
 
@@ -113,7 +115,21 @@ pub(super) fn trips<'py>(py: Python<'py>, trips: &Log<Trip>) -> Table<'py> {
         .column("loaded", |trip| trip.loaded)?
         .column("distance_m", |trip| trip.distance)?
         .column("unhindered_s", |trip| seconds(trip.unhindered))?
-        .column("energy_j", |trip| trip.energy)?;
+        .column("energy_j", |trip| trip.energy)?
+        .column("awaited_s", |trip| seconds(trip.awaited))?;
+    Ok(columns.dict)
+}
+
+/// Searches for plans of trips, and the time that they took.
+pub(super) fn plans<'py>(py: Python<'py>, entries: &[Entry]) -> Table<'py> {
+    let columns = Columns::of(py, entries)
+        .column("robot", |entry| entry.robot)?
+        .column("asked_us", |entry| entry.asked)?
+        .column("begun_us", |entry| entry.begun)?
+        .column("labels", |entry| entry.labels)?
+        .column("took_us", |entry| entry.took)?
+        .column("found", |entry| entry.found)?
+        .column("wall_s", |entry| entry.wall as f64 / 1e9)?;
     Ok(columns.dict)
 }
 
