@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import datetime
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -37,7 +38,7 @@ CASES: list[tuple[str, str, int | None, int]] = [
 
 def searches(layout: str, scenario: str, robots: int | None, duration_s: int) -> pd.DataFrame:
     """Return `labels` and least `seconds` of each search of a run."""
-    given = {"scenario.warmup_s": 0, "scenario.duration_s": duration_s}
+    given: dict[str, Any] = {"scenario.warmup_s": 0, "scenario.duration_s": duration_s}
     given |= {"pacing.planning": "fixed=0"} | ({} if robots is None else {"layout.robots": robots})
     runs = [simulate(layout, scenario, seed=1, set=given) for _ in range(REPETITIONS)]
     tables = [run.table("plans") for run in runs]
