@@ -21,7 +21,7 @@ from rmfs.simulation.idle_rules import IdleRuleWarning, idle_rules
 from rmfs.simulation.inputs import as_overrides, load_inputs, name_of
 from rmfs.simulation.kernel import Kernel
 from rmfs.simulation.pacing import Replay, ReplayPacing, pacing_settings
-from rmfs.simulation.pacing.planning import let_plans_take_time
+from rmfs.simulation.pacing.planning import Tape, let_plans_take_time
 from rmfs.simulation.result import Run
 from rmfs.traffic import Traffic
 
@@ -204,7 +204,7 @@ streams, remark, allow_not_well_formed, traffic_maker
         slow = work.disturbances.slow
         slower = {} if slow is None else {"slow_shares": (slow.speed_share,)}
         traffic = traffic_maker(plan, record_trace=self.log is not None, planner=planner, **slower)
-        let_plans_take_time(traffic, self.pacing_settings.planning, planner.name)
+        let_plans_take_time(traffic, self.pacing_settings.planning, planner.name, _plans_of)
         super().__init__(
             plan,
             work,
@@ -330,6 +330,14 @@ def _with_answers(pacing: PacingSettings) -> Paced:
     if not answers:
         raise InputError(f"pacing replay: {pacing.run}: that run asked no optimiser")
     return Replay(pacing, answers)  # type: ignore[arg-type]
+
+
+def _plans_of(run: Path) -> tuple[dict[str, Any], Tape]:
+    """Read how plans took time in a run, and its searches."""
+    folder = measure.load_run(run)
+    rows = folder.table("plans")
+    columns = (rows[name].tolist() for name in ("robot", "begun_us", "labels", "took_us"))
+    return folder.parameters["pacing_parameters"]["planning"], list(zip(*columns, strict=True))
 
 
 def _require_room(plan: Layout, work: Scenario) -> None:

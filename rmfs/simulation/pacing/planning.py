@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -15,9 +14,15 @@ from rmfs.errors import InputError
 from rmfs.scenario.quantities import NotNegative, Positive
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from rmfs.traffic import Traffic
 
     Overrides = Sequence[tuple[list[str], Any]]
+    Reader = Callable[[Path], tuple[config.Table, "Tape"]]
+
+Tape = list[tuple[int, int, int, int]]
+"""Robot, start (us), labels and time taken (us) of each search of a run."""
 
 SECONDS_PER_LABEL = 2.07e-6
 """Seconds per label of a search, as measured by `python -m tests.tools.calibrate_planning` on an
@@ -138,23 +143,27 @@ def planning_settings(overrides: Overrides) -> PlanningSettings:
     return config.validate(MODES[name], table, "pacing.planning")
 
 
-def let_plans_take_time(traffic: Traffic, settings: PlanningSettings, planner: str) -> None:
+def let_plans_take_time(
+    traffic: Traffic, settings: PlanningSettings, planner: str, read: Reader
+) -> None:
     """Let plans of trips take time in a fleet that has not begun to move.
 
     Parameters
     ----------
     planner
         Name of the fleet's path planner.
+    read
+        Returns the parameters of planning of a recorded run by its folder, and its searches.
 
     Raises
     ------
     InputError
         If the planner does not plan trip by trip, or a run to replay has no recorded plans.
     """
-    tape: list[tuple[int, int, int, int]] = []
+    tape: Tape = []
     how = settings
     if isinstance(how, ReplayPlanning):
-        how, tape = _recorded(how.run)
+        how, tape = _recorded(how.run, read)
     if isinstance(how, InstantPlanning) and not how.period_s and not how.lazy:
         return
     if planner != "time-windows":
@@ -181,20 +190,13 @@ def let_plans_take_time(traffic: Traffic, settings: PlanningSettings, planner: s
     )
 
 
-def _recorded(run: Path) -> tuple[_Own, list[tuple[int, int, int, int]]]:
-    """Return how plans took time in a run, and its recorded plans."""
-    from rmfs import measure
-
-    folder = measure.load_run(run)
-    rows = folder.table("plans")
-    if rows.empty:
+def _recorded(run: Path, read: Reader) -> tuple[_Own, Tape]:
+    """Return how plans took time in a run, and its searches."""
+    kept, tape = read(run)
+    if not tape:
         raise InputError(f"pacing.planning: replay: {run}: plans took no time in that run")
-    kept = folder.parameters["pacing_parameters"]["planning"]
     how = config.validate(MODES[kept["mode"]], kept, str(run))
     if isinstance(how, ReplayPlanning):
-        return _recorded(how.run)
-    if isinstance(how, InstantPlanning | FixedPlanning):
-        # its times are known without a tape
-        return how, []
-    columns = ("robot", "begun_us", "labels", "took_us")
-    return how, list(zip(*(rows[name].tolist() for name in columns), strict=True))
+        return _recorded(how.run, read)
+    # constant times are known without a tape
+    return how, [] if isinstance(how, InstantPlanning | FixedPlanning) else tape
