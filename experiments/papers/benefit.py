@@ -170,11 +170,15 @@ def publish_added(
 def _percent(
     runs: pd.DataFrame, controllers: str, other: str, columns: Sequence[str]
 ) -> dict[tuple[str, str], float]:
-    """Return the differences between two levels of `controllers` in percent, with intervals."""
+    """Return the differences between two levels of `controllers` in percent, with intervals.
+
+    A difference is NaN if the other level has a value of 0 with some seed.
+    """
     row: dict[tuple[str, str], float] = {}
     for column in columns:
         wide = runs.pivot_table(index="replication", columns=CONTROLLERS, values=column)
-        found = interval(100 * (wide[controllers] / wide[other] - 1))
+        base = wide[other].where((wide[other] != 0).all())
+        found = interval(100 * (wide[controllers] / base - 1))
         row[column, "mean"], row[column, HALF] = found.mean, found.half_width
     return row
 

@@ -24,6 +24,9 @@ Shapes = dict[str, tuple[tuple[int, ...], str]]
 FEW_COLLECTIONS = 50_000
 """Allocations between two garbage collections: many, as runs create few reference cycles."""
 
+RUNS_KEPT = 4
+"""Runs per environment after which those that have ended are freed."""
+
 
 def shapes_of(env: DecisionEnv) -> Shapes:
     """Return shape and type of each input and output of an environment, by name."""
@@ -101,11 +104,14 @@ class Stand:
         self._envs = {place: DecisionEnv(**given) for place in places}
         self._first = places[0]
         self._over: set[int] = set()
+        self._begun = 0
+        """Runs begun since those that have ended were last freed."""
 
     def reset(self, seeds: Mapping[int, int | None], options: Any) -> dict[int, Any]:
         """Start a run in each environment."""
         for place, seed in seeds.items():
             self._begin(place, seed, options)
+        self._free()
         return {}
 
     def step(self) -> dict[int, Any]:
@@ -138,6 +144,21 @@ class Stand:
         self._over.discard(place)
         self._board["reward"][place] = 0.0
         self._board["truncated"][place] = False
+        self._begun += 1
+        if self._begun >= RUNS_KEPT * len(self._envs):
+            self._free()
+
+    def _free(self) -> None:
+        """Free the runs that have ended, and leave out the present ones in later collections.
+
+        Runs contain cycles, so that only the garbage collector frees them. The objects of the
+        present runs live long and need not be scanned repeatedly.
+        """
+        self._begun = 0
+        gc.unfreeze()
+        gc.collect()
+        gc.freeze()
+        gc.set_threshold(FEW_COLLECTIONS, 20, 100)
 
     def _write(self, place: int, seen: Any, info: dict[str, Any]) -> None:
         board = self._board
@@ -160,11 +181,6 @@ def work(given: Mapping[str, Any], board: Board, places: range, pipe: Connection
             if name == "close":
                 return
             pipe.send(("done", getattr(stand, name)(*arguments)))
-            if name == "reset":
-                # objects that live as long as the run need not be scanned repeatedly
-                gc.collect()
-                gc.freeze()
-                gc.set_threshold(FEW_COLLECTIONS, 20, 100)
     except (EOFError, KeyboardInterrupt):
         return
     except BaseException as error:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import gc
-from contextlib import contextmanager
 from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -13,7 +11,7 @@ from rmfs.simulation.decision import Decision
 from rmfs.traffic import EventKind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from rmfs.control.view import View
     from rmfs.simulation.agenda import Agenda
@@ -132,13 +130,12 @@ class Loop:
             which to simulate, and may wait first, for example for a page that shows the run.
         """
         try:
-            with _present_objects_uncollected():
-                for percent in range(101 if progress is not None else 0):
-                    until_us = self._end_us * percent // 100
-                    self._refuse_pending(self._go_on(until_us, limit))
-                    assert progress is not None
-                    progress(self.world.now_s, self.end_s)
-                self._refuse_pending(self._go_on(self._end_us, limit))
+            for percent in range(101 if progress is not None else 0):
+                until_us = self._end_us * percent // 100
+                self._refuse_pending(self._go_on(until_us, limit))
+                assert progress is not None
+                progress(self.world.now_s, self.end_s)
+            self._refuse_pending(self._go_on(self._end_us, limit))
         finally:
             self.optimisers.end()
 
@@ -269,44 +266,6 @@ class Loop:
         self.traffic.motion()  # lets robots discard their past moves
         self.events.sampled(self.world.now_s)
         self._sample_again(number + 1)
-
-
-@contextmanager
-def _present_objects_uncollected() -> Iterator[None]:
-    """Keep Python's garbage collector from visiting the objects that exist now.
-
-    Layout, world and libraries outlive the run; visiting them again and again takes 2 to 4 % of its
-    time. New objects are collected as usual. Does nothing where objects are frozen already, since
-    `gc.unfreeze` would release those, too.
-    """
-    if gc.get_freeze_count() > 0:
-        yield
-        return
-    _freeze()
-    try:
-        yield
-    finally:
-        gc.unfreeze()
-
-
-class _Frozen:
-    """Number of objects that were frozen after the last full collection."""
-
-    objects = 0
-
-
-def _freeze() -> None:
-    """Freeze all objects, after a full collection if a fifth more than last time have gathered.
-
-    Finished runs consist of cycles. Once they have been frozen, only full collections free them,
-    and Python itself seldom makes one: many runs in one process would fill the memory.
-    """
-    gc.freeze()
-    if gc.get_freeze_count() > 1.2 * _Frozen.objects:
-        gc.unfreeze()
-        gc.collect()
-        gc.freeze()
-        _Frozen.objects = gc.get_freeze_count()
 
 
 def _traffic_handlers(dispatch: Dispatch) -> list[Callable[[int, int], None] | None]:

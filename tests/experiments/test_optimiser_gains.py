@@ -27,6 +27,21 @@ def test_each_is_compared_with_its_own_start_rule_seed_by_seed():
     assert made.loc["backlog, a", ("units_per_h", "mean")] == pytest.approx(15.0)
 
 
+def test_no_percentage_of_zero():
+    """A start rule that stores no bundle with one seed: there is no difference in percent."""
+    frame = pd.DataFrame(
+        {
+            "demand": "backlog",
+            "controllers": ["a", "a", f"a{START}", f"a{START}"],
+            "replication": [1, 2] * 2,
+            "bundles_per_h": [10.0, 20.0, 0.0, 10.0],
+        }
+    )
+    made = of_optimiser(frame, ("demand",), ("bundles_per_h",))
+    assert made.frame.loc["backlog, a"].isna().all()
+    assert "inf" not in made.markdown()
+
+
 def test_rules_of_a_design_are_its_controllers():
     frame = pd.DataFrame(
         {

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+import multiprocessing
+import weakref
 from typing import Any
 
 import gymnasium
@@ -10,6 +13,8 @@ import pytest
 
 from rmfs.errors import InputError
 from rmfs.learning import NAME, DecisionEnv, DecisionVectorEnv, Reward
+from rmfs.learning.episode import Episodes
+from rmfs.learning.workers import RUNS_KEPT, Board, Stand, shapes_of
 
 GIVEN: dict[str, Any] = {
     "layout": "small",
@@ -54,6 +59,35 @@ def test_several_do_what_single_ones_do(observation: str) -> None:
                 assert theirs == told["footprint"]["units_picked"]
     several.close()
     assert ended > 2
+
+
+def test_runs_that_have_ended_are_freed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A process that works through many runs keeps a few of them, not all."""
+    runs: list[weakref.ref[Any]] = []
+    begin = Episodes.begin
+
+    def remembered(self: Episodes, seed: int | None) -> Any:
+        run = begin(self, seed)
+        runs.append(weakref.ref(run))
+        return run
+
+    monkeypatch.setattr(Episodes, "begin", remembered)
+    given = GIVEN | {"set": {"scenario.duration_s": 1, "layout.robots": 4}}
+    board = Board.made(shapes_of(DecisionEnv(**given)), 2, multiprocessing.get_context("spawn"))
+    stand = Stand(given, board, range(2))
+    thresholds = gc.get_threshold()
+    try:
+        for seed in range(5):
+            stand.reset({0: seed, 1: seed}, None)
+            assert sum(run() is not None for run in runs) <= 2
+        for _ in range(100):
+            board.arrays["action"][:] = board.arrays["action_mask"].argmax(axis=1)
+            stand.step()
+            assert sum(run() is not None for run in runs) <= (RUNS_KEPT + 1) * 2
+    finally:
+        gc.unfreeze()
+        gc.set_threshold(*thresholds)
+    assert len(runs) > 30
 
 
 def test_gymnasium_makes_it() -> None:

@@ -11,7 +11,6 @@ from ledger import Ledger
 from rmfs import Simulation, control, layout, scenario, simulate
 from rmfs.errors import InputError
 from rmfs.observer import Observer
-from rmfs.simulation import loop
 from rmfs.simulation.kernel import Kernel
 
 
@@ -156,25 +155,17 @@ class TestSimulate:
             simulate(plan, "basic", "default", overrides=[(["layout", "robots"], 3)])
 
 
-def test_finished_runs_do_not_gather_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A full collection, due when enough objects have gathered, frees a run among old objects."""
-    monkeypatch.setattr(loop._Frozen, "objects", 0)
+def test_finished_runs_are_left_to_the_garbage_collector() -> None:
+    """No run freezes objects: frozen ones are freed by full collections only, if at all."""
+    frozen = []
 
     def finished() -> weakref.ref[Simulation]:
         simulation = Simulation("small", "small", seed=1, set={"scenario.duration_s": 20})
-        simulation.run()
+        simulation.run(lambda now_s, end_s: frozen.append(gc.get_freeze_count()))
         return weakref.ref(simulation)
 
-    gc.disable()
-    try:
-        first = finished()
-        assert first() is not None  # in cycles, hence not freed at once
-        assert loop._Frozen.objects > 0
-        second = finished()
-        assert first() is not None  # too few objects for a collection
-        loop._Frozen.objects = 0
-        finished()
-        assert first() is None
-        assert second() is None
-    finally:
-        gc.enable()
+    before = gc.get_freeze_count()
+    run = finished()
+    gc.collect()
+    assert run() is None
+    assert set(frozen) == {before}
