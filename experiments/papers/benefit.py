@@ -5,6 +5,8 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rmfs.experiments.papers.study import FAILED
 from rmfs.experiments.statistics import interval
 from rmfs.experiments.tables import HALF, Table, digits, rows_frame
@@ -177,8 +179,8 @@ def _percent(
     row: dict[tuple[str, str], float] = {}
     for column in columns:
         wide = runs.pivot_table(index="replication", columns=CONTROLLERS, values=column)
-        base = wide[other].where((wide[other] != 0).all())
-        found = interval(100 * (wide[controllers] / base - 1))
+        base = wide[other].to_numpy(float)
+        found = interval(100 * (wide[controllers] / base - 1) if base.all() else [np.nan])
         row[column, "mean"], row[column, HALF] = found.mean, found.half_width
     return row
 
