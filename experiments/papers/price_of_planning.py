@@ -1,0 +1,167 @@
+"""The cost of planning time: units per hour over the time that a path plan takes.
+
+The design `price-of-planning` varies how long the plan of a trip takes, on two layouts with five
+fleets: a constant time, with one planner for all robots or one for each; the work of the searches,
+at the rates of planners 1,000 and 10,000 times slower than ours; and the time at which robots ask
+for plans. The study publishes the change of units per hour compared with plans that take
+no time, paired by seed, and for each fleet the time from which planning costs throughput. It takes
+about 0.2 CPU hours.
+"""
+
+from __future__ import annotations
+
+import sys
+from math import nan
+from typing import TYPE_CHECKING
+
+from rmfs.experiments.figures.style import saving
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.statistics import interval
+from rmfs.experiments.tables import HALF, Table, rows_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rmfs.experiments.papers.study import Study
+    from rmfs.experiments.statistics import Interval
+
+FLEET, PLANNING = "fleet", "planning"
+INSTANT = "instant"
+COLUMNS = ("units_per_h", "planning_charged_s", "plan_wait_s")
+
+Rows = dict[str, dict[tuple[str, str], float]]
+
+
+def wide(frame: pd.DataFrame, fleet: str, column: str = "units_per_h") -> pd.DataFrame:
+    """Return a measure of one fleet, with one row per seed and one column per kind of planning."""
+    own = frame[frame[FLEET] == fleet]
+    return own.pivot_table(index="replication", columns=PLANNING, values=column, sort=False)
+
+
+def changes(frame: pd.DataFrame, fleet: str) -> dict[str, Interval]:
+    """Return the change of a fleet's units per hour by kind of planning, in percent."""
+    units = wide(frame, fleet)
+    return {
+        planning: interval(100 * (units[planning] / units[INSTANT] - 1))
+        for planning in map(str, units)
+        if planning != INSTANT
+    }
+
+
+def losses(frame: pd.DataFrame) -> Table:
+    """Return the change of units per hour by kind of planning (rows) and fleet (columns).
+
+    Parameters
+    ----------
+    frame
+        Runs with `fleet`, `planning`, `replication` and the columns of the study.
+    """
+    rows: Rows = {}
+    fleets = list(frame[FLEET].unique())
+    for fleet in fleets:
+        for planning, change in changes(frame, fleet).items():
+            row = rows.setdefault(planning, {})
+            row |= {(fleet, "mean"): change.mean, (fleet, HALF): change.half_width}
+    decimals = {(fleet, part): 1 for fleet in fleets for part in ("mean", HALF)}
+    caption = (
+        "Change of units per hour compared with plans that take no time, in percent, paired by "
+        "seed, with 95% confidence intervals (Student's t). Seconds: per plan."
+    )
+    return Table(rows_frame(rows, "planning"), decimals, caption)
+
+
+def seconds(planning: str) -> float:
+    """Return the constant time of a plan in s; nan for other kinds of planning."""
+    number, _, rest = planning.removesuffix(", each").partition(" ")
+    return float(number) if rest == "s" else nan
+
+
+def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float]:
+    """Return the time of a plan from which planning costs throughput, and the one before it, in s.
+
+    It costs throughput from the shortest time at which, and at all longer ones, the interval of the
+    change lies below zero. nan if there is no such time, or none before it.
+
+    Parameters
+    ----------
+    each
+        Whether each robot has a planner of its own.
+    """
+    found = changes(frame, fleet)
+    levels = sorted(
+        (seconds(one), one) for one in found if one.endswith(", each") == each and seconds(one) > 0
+    )
+    begin = before = nan
+    for time_s, planning in reversed(levels):
+        change = found[planning]
+        if not change.mean + change.half_width < 0:
+            before = time_s
+            break
+        begin = time_s
+    return begin, before
+
+
+def thresholds(frame: pd.DataFrame) -> Table:
+    """Return where planning begins to cost throughput, per fleet."""
+    rows: Rows = {}
+    for fleet in frame[FLEET].unique():
+        units = interval(wide(frame, fleet)[INSTANT])
+        plans = wide(frame, fleet, "plans")[INSTANT] / wide(frame, fleet, "duration_s")[INSTANT]
+        one, each = begins(frame, fleet, each=False), begins(frame, fleet, each=True)
+        rows[fleet] = {
+            ("units per hour", "mean"): units.mean,
+            ("units per hour", HALF): units.half_width,
+            ("plans per hour", ""): 3600 * float(plans.mean()),
+            ("busy at, s", ""): 1 / float(plans.mean()),
+            ("no loss shown up to, s", ""): one[1],
+            ("loss from, s", ""): one[0],
+            ("each: no loss shown up to, s", ""): each[1],
+            ("each: loss from, s", ""): each[0],
+        }
+    decimals = {("units per hour", part): 0 for part in ("mean", HALF)}
+    decimals |= {("plans per hour", ""): 0, ("busy at, s", ""): 1}
+    decimals |= {
+        (f"{planners}{what}, s", ""): 1
+        for planners in ("", "each: ")
+        for what in ("no loss shown up to", "loss from")
+    }
+    caption = (
+        "Where planning begins to cost. Units and plans per hour are those of plans that take no "
+        "time; busy at: time of a plan at which one planner would be busy all the time with as "
+        "many plans. Loss from: shortest constant time of a plan of those studied from which on "
+        "units per hour are significantly fewer (95% confidence interval of the paired change "
+        "below zero), with one planner for all robots or one for each."
+    )
+    return Table(rows_frame(rows, "fleet"), decimals, caption)
+
+
+def picture(study: Study) -> None:
+    """Plot units per hour, as a share of those of instant planning, over seconds per plan."""
+    path = study.place("price-of-planning.png")
+    with saving(path, 6.0, 4.0) as figure:
+        ax = figure.subplots()
+        for colour, fleet in enumerate(study.frame[FLEET].unique()):
+            found = changes(study.frame, fleet)
+            for style, each in (("-", False), (":", True)):
+                own = [one for one in found if one.endswith(", each") == each and seconds(one) > 0]
+                points = sorted((seconds(one), 100 + found[one].mean) for one in own)
+                label = None if each else fleet
+                xs, ys = zip(*points, strict=True)
+                ax.plot(xs, ys, style, marker=".", color=f"C{colour}", label=label)
+        ax.set_xscale("log")
+        ax.set_xlabel("time per plan (s); dotted: a planner for each robot")
+        ax.set_ylabel("units/h, % of instant planning")
+        ax.legend(fontsize=8)
+    study.record(path, ["units_per_h"], kind="lines", confidence=0.95)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    study = done(parser("price-of-planning", __doc__).parse_args(arguments))
+    study.publish(thresholds(study.frame), "price-of-planning", COLUMNS)
+    study.publish(losses(study.frame), "price-of-planning-change", COLUMNS[:1])
+    picture(study)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))
