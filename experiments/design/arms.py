@@ -362,9 +362,10 @@ def _arm(
     overrides: Overrides = []
     for key, value in settings.items():
         path = key.split(".")
-        if path[0] not in PARTS or "" in path or len(path) < 2:
+        if path[0] not in (*PARTS, "pacing") or "" in path or len(path) < 2:
             problems.append(
-                f"{key}: not a parameter; must begin with layout., scenario. or controllers."
+                f"{key}: not a parameter; must begin with layout., scenario., controllers. or "
+                "pacing."
             )
         else:
             overrides.append((path, _anchored_rule(path, value, folder)))

@@ -80,11 +80,15 @@ class Resolver:
             found[part], problem = self._part(part, arm.inputs[part], own, load)
             if problem:
                 problems.append(problem)
+        pacing: Any = arm.pacing
+        own = [(path[1:], value) for path, value in of_pacing(arm.overrides)]
         try:
-            pacing_settings(arm.pacing)
+            settings = pacing_settings(arm.pacing, own)
         except InputError as error:
             problems.append(str(error))
-        told = {**found, "pacing": arm.pacing, "check": check, "seeded": sorted(seeded)}
+        else:
+            pacing = settings.model_dump(mode="json") if own else arm.pacing
+        told = {**found, "pacing": pacing, "check": check, "seeded": sorted(seeded)}
         if self.measures:
             files = [[*map(str, sources([one]).values())] for one in self.measures]
             names = [one.__qualname__ for one in self.measures]
@@ -145,6 +149,11 @@ _LOADERS: dict[str, Callable[..., Any]] = {
     "scenario": scenarios.load,
     "controllers": control.load,
 }
+
+
+def of_pacing(overrides: Overrides) -> Overrides:
+    """Return the overrides of the pacing."""
+    return [(path, value) for path, value in overrides if path[0] == "pacing"]
 
 
 def load(inputs: dict[str, str], overrides: Overrides) -> Inputs:

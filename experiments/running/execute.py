@@ -72,6 +72,7 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
         inputs.controllers,
         seed=job.seed,
         pacing=job.pacing,
+        overrides=resolve.of_pacing(job.overrides),
         trace=job.check,
         allow_not_well_formed=job.allow_not_well_formed,
         measures=job.measures,

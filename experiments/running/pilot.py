@@ -101,6 +101,7 @@ def _tried(job: Job) -> float:
         inputs.controllers,
         seed=job.seed,
         pacing=job.pacing,
+        overrides=resolve.of_pacing(job.overrides),
         allow_not_well_formed=job.allow_not_well_formed,
         measures=job.measures,
     )

@@ -47,6 +47,15 @@ def test_levels_may_be_tables_with_and_without_labels(design):
     assert plan.arms[2].levels == {"controllers.poa": "usual"}
 
 
+def test_parameters_of_pacing_can_be_factors(design):
+    levels = ["instant", "fixed=1", "fixed=2"]
+    plan = experiments.plan(design(factors={"pacing.planning": levels}))
+    assert plan.problems == []
+    assert len({arm.digest for arm in plan.arms}) == 3
+    problems = experiments.plan(design(factors={"pacing.planning": ["fixd=1"]})).problems
+    assert "pacing.planning: fixd=1: no such mode; did you mean fixed?" in "\n".join(problems)
+
+
 def test_a_factor_of_its_own_sets_several_parameters(design):
     levels = [
         {"label": "small", "layout.robots": 8, "scenario.demand.orders": 50},
