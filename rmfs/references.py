@@ -88,7 +88,9 @@ def require_allowed(reference: str) -> None:
         Within `installed_only`, whatever the reference.
     """
     if _INSTALLED_ONLY.get():
-        raise InputError(f"{reference}: must be the name of something installed, not of code")
+        raise InputError(
+            f"{reference}: must be the name of an installed class, not a reference to code"
+        )
 
 
 def is_reference(text: str) -> bool:
@@ -195,7 +197,7 @@ def _imported(reference: str, what: str) -> object:
         return _GIVEN[reference]
     if not place or not name:
         raise InputError(
-            f"{reference}: no {what} of that name; expected module:Class or path/to/file.py:Class"
+            f"{reference}: no {what} has this name; expected module:Class or path/to/file.py:Class"
         )
     module = _file(place, reference) if place.endswith(_SUFFIX) else _module(place, reference)
     try:
@@ -214,7 +216,7 @@ def _imported(reference: str, what: str) -> object:
 def _file(place: str, reference: str) -> ModuleType:
     path = Path(place).absolute()
     if not path.is_file():
-        raise InputError(f"{reference}: no file {path}")
+        raise InputError(f"{reference}: there is no file {path}")
     return _import(_module_name(path), reference)
 
 
@@ -226,8 +228,8 @@ def _module(name: str, reference: str) -> ModuleType:
         importlib.invalidate_caches()
     if not _exists(name):
         raise InputError(
-            f"{reference}: no module {name}, neither installed nor in the working directory "
-            f"({here}); a file is named by its path: path/to/file.py:Class"
+            f"{reference}: there is no module {name}, neither installed nor in the working "
+            f"directory ({here}); a file is given by its path: path/to/file.py:Class"
         )
     return _import(name, reference)
 

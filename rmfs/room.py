@@ -62,8 +62,8 @@ def require(needed: float, what: str) -> None:
     free = available()
     if needed > free and not _force.get():
         raise InputError(
-            f"{what}: would take about {spoken(needed)} of memory, and {spoken(free)} are free; "
-            "`rmfs run --force` begins it all the same"
+            f"{what}: would need about {spoken(needed)} of memory, but only {spoken(free)} are "
+            "free; `rmfs run --force` starts it anyway"
         )
 
 

@@ -315,7 +315,7 @@ def crossings(site: Site, rows: list[Rows], end_us: int) -> Iterator[str]:
 
 
 def _places_near(site: Site, places: np.ndarray, a: int, b: int) -> list[int]:
-    """Return the storage places of which a pod would be touched on the way from a to b."""
+    """Return the storage locations of which a pod would be touched on the way from a to b."""
     dx, dy = site.x[b] - site.x[a], site.y[b] - site.y[a]
     px, py = site.x[places] - site.x[a], site.y[places] - site.y[a]
     along = np.clip((px * dx + py * dy) / (dx * dx + dy * dy), 0, 1)

@@ -280,7 +280,11 @@ def conclude(target: Path, footprint: pd.Series, report: CheckReport | None) -> 
     Console(highlight=False).print(summarised(footprint))
     print(target)
     if footprint["units_score"] > 1.0:
-        print("rmfs: more units were picked than is possible: a defect", file=sys.stderr)
+        print(
+            "rmfs: more units were picked than the proven upper bound allows (units_score > 1): "
+            "please report this defect",
+            file=sys.stderr,
+        )
         raise typer.Exit(UNSAFE)
     if report is not None and not report.ok:
         print(f"rmfs: {report.summary()}", file=sys.stderr)

@@ -79,7 +79,7 @@ class Answer:
     def __post_init__(self) -> None:
         if self.solution is not None and not isinstance(self.solution, Mapping):
             kind = type(self.solution).__name__
-            raise TypeError(f"solution must be values by name, or None; it is a {kind}")
+            raise TypeError(f"solution must map names to values, or be None; it is a {kind}")
         for name in ("work", "built", "wall_s", "build_s"):
             value = getattr(self, name)
             if not (isfinite(value) and value >= 0.0):

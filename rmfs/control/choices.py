@@ -116,8 +116,9 @@ def _refuse_mutual_waiting(choices: Mapping[Problem, Choice], source: str) -> No
             if choice.problem in partner.controller.waits_for:
                 raise InputError(
                     f"{source}: {choice.problem} {choice.name} waits for the decision of "
-                    f"{problem}, and {problem} {partner.name} for that of {choice.problem}: "
-                    f"neither would ever decide; {_that_do_not_wait(choice.problem, problem)} or "
+                    f"{problem}, and {problem} {partner.name} for that of {choice.problem}, so "
+                    "neither would ever decide; choose a rule that does not wait: "
+                    f"{_that_do_not_wait(choice.problem, problem)}; or "
                     f"{_that_do_not_wait(problem, choice.problem)}"
                 )
 
@@ -128,7 +129,7 @@ def _that_do_not_wait(problem: Problem, other: Problem) -> str:
         for name in registry.built_in(problem)
         if other not in (rule := registry.find(problem, name)).waits_for and not rule.is_dummy
     ]
-    return f"choose {problem} {', '.join(names)}"
+    return f"for {problem} {', '.join(names)}"
 
 
 def _refuse_different_views(choices: Mapping[Problem, Choice], source: str) -> None:

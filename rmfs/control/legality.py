@@ -35,7 +35,7 @@ def why_not(given: Any, question: Question, view: View) -> str:
     kinds = KINDS[question.problem]
     if not isinstance(given, kinds):
         names = ", ".join(kind.__name__ for kind in kinds)
-        return f"a turn of {question.problem} takes {names} of rmfs.control.decisions"
+        return f"in a turn of {question.problem}, expected {names} of rmfs.control.decisions"
     return reason(given, view)
 
 
@@ -120,12 +120,15 @@ def _send(decision: say.SendBundle, view: View) -> str:
     if wrong:
         return wrong
     if bundle.station >= 0:
-        return f"bundle {bundle.index} already has station {bundle.station}"
+        return f"bundle {bundle.index} is already assigned to station {bundle.station}"
     target = view.replenishment_stations[station - first]
     if not target.active:
         return f"station {station} is switched off"
     if bundle.space > target.free_space:
-        return f"station {station} has {target.free_space:g} space units left, not {bundle.space:g}"
+        return (
+            f"station {station} has {target.free_space:g} space units left, but bundle "
+            f"{bundle.index} takes {bundle.space:g}"
+        )
     return ""
 
 
@@ -135,16 +138,19 @@ def _promise(decision: say.PromiseBundle, view: View) -> str:
     if wrong:
         return wrong
     if bundle.pod >= 0:
-        return f"bundle {bundle.index} already has pod {bundle.pod}"
+        return f"bundle {bundle.index} is already assigned to pod {bundle.pod}"
     free = float(view.inventory.capacity[pod] - view.inventory.load[pod])
     if bundle.space > free:
-        return f"pod {pod} has {free:g} space units left, not {bundle.space:g}"
+        return (
+            f"pod {pod} has {free:g} space units left, but bundle {bundle.index} takes "
+            f"{bundle.space:g}"
+        )
     return ""
 
 
 def _release(decision: say.ReleasePod, view: View) -> str:
     held = decision.pod in view.bundles.unreleased
-    return "" if held else f"no bundles are promised to pod {decision.pod}"
+    return "" if held else f"pod {decision.pod} has no assigned bundles to release"
 
 
 def _switch(decision: say.SwitchStation, view: View) -> str:
@@ -190,7 +196,7 @@ def _visit(decision: say.Visit, view: View) -> str:
     robot, pod, station, _ = decision
     first = len(view.stations)
     others = len(view.all_stations) - first
-    wrong = _station(station, others, "station of another kind", first)
+    wrong = _station(station, others, "station other than pick and replenishment stations", first)
     if wrong or robot.pod == pod:
         return wrong or _may_begin(robot, view)
     return _fetches(robot, pod, view)
@@ -207,12 +213,16 @@ def _charge(decision: say.Charge, view: View) -> str:
         return f"robot {robot.index} stands at an energy station and must leave it first"
     places = [other.index for other in view.recovery_stations]
     if station not in places:
-        return f"station {station} is not an energy station (those are: {places})"
+        return f"station {station} is not an energy station (energy stations: {places})"
     if not isinstance(until, int | float) or not 0 < until <= 1:
-        return f"{until!r} is not a level (a share of the capacity, above 0 and at most 1)"
+        return f"the level must be a share of the capacity above 0 and at most 1 (given: {until!r})"
     bound = len(view.all_stations[station].tasks)
     most = len(view.layout.stations[station].queue)
-    return "" if bound < most else f"{bound} robots are already bound for station {station}"
+    return (
+        ""
+        if bound < most
+        else f"{bound} robots are already on their way to or at station {station}"
+    )
 
 
 def _unplug(decision: say.Unplug, view: View) -> str:
@@ -224,7 +234,7 @@ def _unplug(decision: say.Unplug, view: View) -> str:
         if batteries is None or batteries.share(robot.index) >= batteries.enough_share:
             return ""
         return f"robot {robot.index} has too little charge for a task"
-    return f"robot {robot.index} is not at a plug-in place"
+    return f"robot {robot.index} is not at a charger"
 
 
 def _empty_place(place: Any, view: View) -> str:
@@ -263,7 +273,7 @@ def _rest(decision: say.Rest, view: View) -> str:
     if not 0 <= place < len(view.storage.kept_by):
         return f"{place} is not a waypoint"
     keeper = view.storage.kept_by[place]
-    return "" if keeper in (-1, robot.index) else f"place {place} is reserved for robot {keeper}"
+    return "" if keeper in (-1, robot.index) else f"waypoint {place} is reserved for robot {keeper}"
 
 
 def _work_for(decision: say.WorkFor, view: View) -> str:
@@ -333,7 +343,7 @@ def _replenishment_pod(given: Any, question: Question, view: View) -> str:
 
 
 def _one_of(given: Any, question: Question, view: View) -> str:
-    return "" if given in question.stations else f"it is not one of {question.stations}"
+    return "" if given in question.stations else f"the station must be one of {question.stations}"
 
 
 def _place(given: Any, question: Question, view: View) -> str:

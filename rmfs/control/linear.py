@@ -56,7 +56,9 @@ def checked(kind: str, weights: Mapping[str, float]) -> Weights:
     """
     unknown = [name for name in weights if name not in COLUMNS[kind]]
     if unknown:
-        raise ValueError(f"{unknown[0]} is not a feature here; valid: {', '.join(COLUMNS[kind])}")
+        raise ValueError(
+            f"{unknown[0]} is not a feature of {kind}; valid: {', '.join(COLUMNS[kind])}"
+        )
     return {name: float(weights.get(name, 0.0)) for name in COLUMNS[kind]}
 
 

@@ -75,7 +75,7 @@ def demonstrate(
         typer.Option(
             metavar="URL",
             help="Address to which robots connect: tcp://HOST:PORT; room://HOST:PORT for an "
-            "emulated room that keeps the clock; `emulated` starts such a room along with it.",
+            "emulated room that keeps the clock; `emulated` also starts such a room.",
         ),
     ],
     layout: Layout = "demonstrator",
@@ -137,8 +137,8 @@ def demonstrate(
     target = out or Path("results") / f"demonstration-{default_name(inputs, seed, set_ or [])}"
     if is_own and past_failure:
         raise InputError(
-            f"--past-failure: a room of --robots {EMULATED} ends with its server, so there is "
-            "nothing to resume (rmfs emulate runs a room of its own)"
+            f"--past-failure: cannot be combined with --robots {EMULATED}, whose room ends with "
+            "the server; start a room by rmfs emulate, and use --robots room://HOST:PORT"
         )
     hub = _hub(host, port, known, expected(chosen, is_emulated=is_emulated), robots)
     with reserved(target, force=force) as folder:
@@ -156,7 +156,7 @@ def demonstrate(
             _room_of_its_own(hub, known, folder / TRUTH, asked, is_wanted=is_own),
             progress(f"demonstrating {', '.join(inputs.values())}, seed {seed}") as advance,
         ):
-            step("robots are expected at {}:{}".format(*hub.address))
+            step("waiting for robots at {}:{}".format(*hub.address))
             try:
                 done = demonstration.run(
                     *inputs.values(),

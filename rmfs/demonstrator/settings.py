@@ -58,7 +58,8 @@ def secret(file: Path | None) -> bytes:
     if len(known) < SHORTEST_SECRET:
         where = f"environment variable {SECRET}" if file is None else f"--secret {file}"
         raise InputError(
-            f"{where}: the secret shared with the robots, at least {SHORTEST_SECRET} characters"
+            f"{where}: must hold the secret shared with the robots, of at least {SHORTEST_SECRET} "
+            "characters"
         )
     return known
 
@@ -116,7 +117,7 @@ def tags(layout: Layout, file: Path | None) -> list[str]:
                 f"{layout.waypoints - 1}"
             )
         if int(waypoint) in known or tag.upper() in known.values():
-            raise InputError(f"--tags {file}: line {number}: waypoint or tag for the second time")
+            raise InputError(f"--tags {file}: line {number}: the waypoint or the tag occurs twice")
         known[int(waypoint)] = tag.upper()
     missing = sorted(set(range(layout.waypoints)) - set(known))
     if missing:

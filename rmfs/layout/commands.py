@@ -114,7 +114,7 @@ def check_command(
     verdict = "allowed" if violations else "well-formed"
     typer.echo(
         f"{layout}: {verdict}: {loaded.waypoints} waypoints, {len(loaded.edge_target)} edges, "
-        f"{int(loaded.is_storage.sum())} storage places, {loaded.pods} pods, "
+        f"{int(loaded.is_storage.sum())} storage locations, {loaded.pods} pods, "
         f"{loaded.robots} robots, {len(loaded.pick_stations)} pick stations, "
         f"{len(loaded.replenishment_stations)} replenishment stations, "
         f"{len(loaded.elevators)} elevators, {len(loaded.tiers)} tiers"
@@ -180,10 +180,10 @@ def _print_measures(layout: Layout) -> None:
     found = measures(layout)
     if found.to_station_mean_m is not None:
         typer.echo(
-            "way from a storage place to the nearest pick station: "
+            "distance from a storage location to the nearest pick station: "
             f"{found.to_station_mean_m:.1f} m on average, at most {found.to_station_max_m:.1f} m"
         )
-    typer.echo(f"waypoints whose closure would cut the floor apart: {found.bottlenecks}")
+    typer.echo(f"waypoints whose closure would disconnect the floor: {found.bottlenecks}")
 
 
 def _print_notes(notes: list[str]) -> None:

@@ -173,7 +173,7 @@ def find(reference: str) -> type[StationKind]:
         if reference not in known:
             there = f"; valid: {', '.join(sorted(known))}"
             raise InputError(
-                f"no kind of station {reference}; expected module:Class or "
+                f"no kind of station is named {reference}; expected module:Class or "
                 f"path/to/file.py:Class{there}"
             )
         reference = known[reference]
@@ -209,9 +209,9 @@ def station_kind(
     told = getattr(found, "name", None)
     if told != name or name in _RESERVED:
         raise InputError(
-            f"{key}: {reference} is named {told!r}: use the table other_stations.{told}"
+            f"{key}: {reference} has the name {told!r}: use the table other_stations.{told}"
             if told != name
-            else f"{key}: the name {name} is taken; the class needs another name"
+            else f"{key}: the name {name} is reserved; the class needs another name"
         )
     for needed in ("letter", "colour"):
         if not isinstance(getattr(found, needed, None), str):

@@ -82,13 +82,13 @@ def load_with_notes(
         case ".map":
             return override(read_map(path), overrides, source), []
     raise InputError(
-        f"{path}: unknown kind of layout; expected .toml, .json, .txt, .map, .xlayo or .xinst"
+        f"{path}: unknown suffix of a layout; must be .toml, .json, .txt, .map, .xlayo or .xinst"
     )
 
 
 def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layout:
     if not table:
-        raise InputError(f'{path}: is empty; a layout starts with format = "rmfs-layout/1"')
+        raise InputError(f'{path}: is empty; a layout must start with format = "rmfs-layout/1"')
     own, factors = split_factors(overrides)
     parameters = validate(LayoutParameters, apply_overrides(table, own), str(path))
     try:

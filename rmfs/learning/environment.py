@@ -98,7 +98,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         render_mode: str | None = None,
     ) -> None:
         if observation not in ("dict", "flat"):
-            raise InputError(f"observation {observation}: valid: dict, flat")
+            raise InputError(f"observation: must be dict or flat (given: {observation})")
         self.observing = Observing(problems, candidates, rankings)
         self.episodes = Episodes(
             layout,
@@ -132,7 +132,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
             If `reset` has not been called yet.
         """
         if self._run is None:
-            raise RuntimeError("reset the environment first")
+            raise RuntimeError("no episode has begun: call reset first")
         return self._run
 
     @property
@@ -170,7 +170,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         """Make a decision and simulate up to the next one."""
         run, options = self.run, self._options
         if options is None:
-            raise RuntimeError("the run has ended: reset the environment")
+            raise RuntimeError("the episode has ended: call reset")
         before_s = run.now_s
         invalid = not self._take(options, int(action))
         self._go_on()
@@ -199,7 +199,10 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         """
         options = self._options
         if options is None or not self._with_rule:
-            raise RuntimeError("there is no rule to be asked: make the environment with rule=True")
+            raise RuntimeError(
+                "advised() needs the installed rule and an open question: create the environment "
+                "with rule=True, and call it before the episode ends"
+            )
         advice = self._advised(options)
         if advice is None:
             return self.decline

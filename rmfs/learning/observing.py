@@ -114,18 +114,18 @@ class Observing:
         rankings: Mapping[str, Mapping[str, float]] | None = None,
     ) -> None:
         if candidates < 1:
-            raise InputError(f"candidates {candidates}: must be 1 or more")
+            raise InputError(f"candidates: must be 1 or more (given: {candidates})")
         known = [str(problem) for problem in KINDS]
         for problem in problems:
             if problem not in known:
-                raise InputError(f"problem {problem}: valid: {', '.join(known)}")
+                raise InputError(f"problem {problem}: must be one of {', '.join(known)}")
         self.k = candidates
         self.kinds = tuple(kind for one in problems for kind in KINDS[Problem(one)])
         self.features = features_of(self.kinds)
         self.global_features = (
             *GLOBAL_FEATURES,
             *(
-                Feature(f"is {kind}", "", 1.0, "the question is of this kind")
+                Feature(f"is {kind}", "", 1.0, "1 if the question is of this kind")
                 for kind in self.kinds
             ),
         )
@@ -216,10 +216,14 @@ def _places(kind: str, names: Sequence[str]) -> tuple[NDArray[np.intp], NDArray[
 def _checked(rankings: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:
     for kind, weights in rankings.items():
         if kind not in COLUMNS:
-            raise InputError(f"rankings.{kind}: valid: {', '.join(COLUMNS)}")
+            raise InputError(
+                f"rankings.{kind}: unknown kind of question; valid: {', '.join(COLUMNS)}"
+            )
         for name in weights:
             if name not in COLUMNS[kind]:
-                raise InputError(f"rankings.{kind}.{name}: valid: {', '.join(COLUMNS[kind])}")
+                raise InputError(
+                    f"rankings.{kind}.{name}: unknown feature; valid: {', '.join(COLUMNS[kind])}"
+                )
     return {kind: dict(weights) for kind, weights in rankings.items()}
 
 

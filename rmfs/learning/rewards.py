@@ -164,7 +164,7 @@ def reward_of(wanted: Wanted) -> Reward:
     if isinstance(wanted, (str, type)):
         return _one(wanted)
     if not wanted:
-        raise InputError("reward: names no reward")
+        raise InputError("reward: must name at least one reward")
     return Weighted([(_one(name), float(weight)) for name, weight in wanted.items()])
 
 
@@ -176,6 +176,8 @@ def observers_of(reward: Reward) -> list[Observer]:
 def _one(wanted: str | type[Reward]) -> Reward:
     if isinstance(wanted, str) and not is_reference(wanted):
         if wanted not in REWARDS:
-            raise InputError(f"reward {wanted}: valid: {', '.join(REWARDS)}, or path.py:Class")
+            raise InputError(
+                f"reward {wanted}: must be one of {', '.join(REWARDS)}, or path/to/file.py:Class"
+            )
         return REWARDS[wanted]()
     return resolve(wanted, Reward, "reward")()

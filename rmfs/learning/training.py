@@ -79,12 +79,12 @@ class Task:
         valid = [str(problem) for problem in TRAINED]
         for problem in self.problems:
             if problem not in valid:
-                raise InputError(f"problem {problem}: valid: {', '.join(valid)}")
+                raise InputError(f"problem {problem}: must be one of {', '.join(valid)}")
         for column in self.objective:
             if column not in names("footprint"):
                 raise InputError(f"objective {column}: is not a column of the footprint")
         if not self.problems or not self.objective or not self.seeds:
-            raise InputError("training needs a problem, an objective and a seed")
+            raise InputError("training needs at least one problem, one objective and one seed")
 
     def start(self) -> NDArray[np.float64]:
         """Return the default weights of the linear rules as one vector.
@@ -183,7 +183,10 @@ def train(
         If a number is out of range, or the package `cma` is not installed.
     """
     if min(generations, population - 3, jobs) < 1 or not spread > 0:
-        raise InputError("training needs 1 generation, a population of 4, 1 process, spread > 0")
+        raise InputError(
+            "training needs generations of 1 or more, a population of 4 or more, jobs of 1 or "
+            f"more and a spread above 0 (given: {generations}, {population}, {jobs}, {spread})"
+        )
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about optional packages of cma

@@ -73,5 +73,5 @@ def warn_if_exceeded(units_per_h: float, bound: float) -> None:
         Upper bound on the units per hour; see `units_per_h_bound`.
     """
     if units_per_h > bound:
-        told = f"{units_per_h} units per hour were picked, and no run can pick more than {bound}"
+        told = f"{units_per_h} units per hour were picked, but at most {bound} are possible"
         warnings.warn(f"{told}: please report this defect", BoundExceededWarning, stacklevel=2)

@@ -64,7 +64,7 @@ def picture(run: Results, what: str) -> Figure:
     """
     name, _, column = ALIASES.get(what, what).partition(":")
     if name not in PICTURES or (column and name != "heat"):
-        raise InputError(f"picture {what}: no such; valid: {', '.join(PICTURES)}, heat:COLUMN")
+        raise InputError(f"picture {what}: unknown; valid: {', '.join(PICTURES)}, heat:COLUMN")
     table, draw, title = PICTURES[name]
     frame = run.table(table)
     tiers = sorted(frame["tier"].unique()) if name == "heat" else [0]

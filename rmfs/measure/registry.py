@@ -71,8 +71,8 @@ def find_all(given: Iterable[str | type[Measure]]) -> list[type[Measure]]:
             other = owners.setdefault(column.name, measure)
             if other is not measure:
                 raise InputError(
-                    f"measure {measure.__qualname__}: {other.__qualname__} has a column "
-                    f"{column.name} as well"
+                    f"measure {measure.__qualname__}: {other.__qualname__} also has a column "
+                    f"{column.name}"
                 )
     return found
 
@@ -114,7 +114,7 @@ def _installed() -> dict[str, str]:
 
 def _what_is_valid(known: Sequence[str]) -> str:
     names = f"installed: {', '.join(known)}" if known else "none is installed"
-    return f"{names}; module:Class and path/to/file.py:Class name your own"
+    return f"{names}; a class of your own is given as module:Class or path/to/file.py:Class"
 
 
 def _problems(measure: type[Measure]) -> Iterator[str]:
@@ -129,11 +129,17 @@ def _problems(measure: type[Measure]) -> Iterator[str]:
             yield f"columns: {column!r} is not an rmfs.measure.Column"
             return
         if not _NAME.fullmatch(column.name):
-            yield f"column {column.name!r}: must be lower-case letters, digits and _"
+            yield f"column {column.name!r}: must consist of lower-case letters, digits and _"
         elif column.name in shipped or column.name in RESERVED or column.name in seen:
             yield f"column {column.name}: a column of this name exists already"
         if column.dtype not in DTYPES:
-            yield f"column {column.name}: type {column.dtype!r}; valid: {', '.join(DTYPES)}"
+            yield (
+                f"column {column.name}: type {column.dtype!r} is invalid; valid: "
+                f"{', '.join(DTYPES)}"
+            )
         if column.better not in get_args(Better):
-            yield f"column {column.name}: better {column.better!r}; valid: more, less, neither"
+            yield (
+                f"column {column.name}: better must be more, less or neither "
+                f"(given: {column.better!r})"
+            )
         seen.add(column.name)

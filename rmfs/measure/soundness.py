@@ -102,14 +102,14 @@ def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int
         },
     )
     robot, begins, ends = (motion[name].to_numpy() for name in ("robot", "t0_us", "t1_us"))
-    _refuse(path, ends < begins, "it ends (t1_us) before it starts (t0_us)")
+    _refuse(path, ends < begins, "the motion ends (t1_us) before it starts (t0_us)")
     same = robot[1:] == robot[:-1]
     _refuse(path, np.append(False, robot[1:] < robot[:-1]), "rows are not sorted by robot")
     apart = same & (begins[1:] != ends[:-1])
-    _refuse(path, np.append(False, apart), "it does not start (t0_us) where the one before ends")
+    _refuse(path, np.append(False, apart), "t0_us must equal t1_us of the robot's previous row")
     lacking = np.setdiff1d(np.arange(layout.robots), robot)
     if len(lacking):
-        raise InputError(f"{path}: there are no rows of robot {lacking[0]}")
+        raise InputError(f"{path}: there are no rows for robot {lacking[0]}")
 
 
 def require_events(
@@ -125,7 +125,7 @@ def require_events(
         Number of SKUs in the run.
     """
     unknown = ~events["kind"].isin(KINDS).to_numpy()
-    _refuse(path, unknown, f"kind is none of {', '.join(KINDS)}")
+    _refuse(path, unknown, f"kind must be one of {', '.join(KINDS)}")
     most = np.iinfo(np.int32).max
     _within(
         path,
@@ -141,7 +141,9 @@ def require_events(
         },
     )
     times = events["time_us"].to_numpy()
-    _refuse(path, np.append(False, times[1:] < times[:-1]), "it is earlier than the row before")
+    _refuse(
+        path, np.append(False, times[1:] < times[:-1]), "time_us is less than in the row before"
+    )
 
 
 def _within(path: Path, frame: pd.DataFrame, valid: Mapping[str, tuple[float, float]]) -> None:
@@ -151,7 +153,7 @@ def _within(path: Path, frame: pd.DataFrame, valid: Mapping[str, tuple[float, fl
         if wrong.any():
             row = int(np.argmax(wrong))
             raise InputError(
-                f"{path}: row {row}: {name} {values[row]} cannot be; valid: {low} to {high}"
+                f"{path}: row {row}: {name} must be from {low} to {high} (given: {values[row]})"
             )
 
 

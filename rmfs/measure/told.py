@@ -82,7 +82,7 @@ def require_told(path: Path, parameters: dict[str, Any]) -> None:
     lacking = [key for key, field in Told.model_fields.items() if field.is_required()]
     lacking = [key for key in lacking if key not in parameters]
     if lacking:
-        raise InputError(f"{path}: corrupted ({', '.join(lacking)} is missing)")
+        raise InputError(f"{path}: corrupted (missing: {', '.join(lacking)})")
     try:
         Told.model_validate(parameters)
     except pydantic.ValidationError as error:

@@ -132,7 +132,7 @@ def _read(path: Path) -> pd.DataFrame:
         raise
     except (OSError, ValueError, pa.ArrowException) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
-        raise InputError(f"{path}: cut off or not a trace ({reason})") from None
+        raise InputError(f"{path}: truncated or not a trace ({reason})") from None
 
 
 def _check(path: Path, schema: Any) -> None:

@@ -60,7 +60,10 @@ class Imported:
     def lines(self) -> list[str]:
         """Return the result as lines, the first of which names the file."""
         if not self.kind:
-            return [f"{self.source.as_posix()}: not a file of RAWSim-O's that is imported"]
+            return [
+                f"{self.source.as_posix()}: skipped, as it is not a RAWSim-O file that can be "
+                "imported"
+            ]
         if self.refused:
             return [f"{self.source.as_posix()}: {self.kind}, refused: {self.refused}"]
         made = ", ".join(path.as_posix() for path in self.written)
@@ -136,7 +139,7 @@ def _move(files: list[Path], goal: Path, folder: Path) -> None:
     for file in files:
         if (goal / file.name).exists():
             taken = (goal / file.name).relative_to(folder).as_posix()
-            raise InputError(f"{taken} was made of another file already")
+            raise InputError(f"another file was already imported as {taken}")
     goal.mkdir(parents=True, exist_ok=True)
     for file in files:
         file.replace(goal / file.name)
@@ -153,7 +156,7 @@ def _layout(path: Path, target: Path) -> Written:
         layouts.refuse(layouts.load(target), path.name, allow_not_well_formed=True)
     if violations:
         notes.append(
-            "not well-formed, so that a run refuses it unless it is allowed: "
+            "not well-formed: a run refuses it without --allow-not-well-formed: "
             + "; ".join(map(str, violations))
         )
     return [target], notes
@@ -178,7 +181,7 @@ def _sku_set(path: Path, target: Path) -> Written:
         "units per bundle": content.bundle_units,
     }
     drawn = [what for what, given in missing.items() if given is None]
-    notes = [f"gives no {what}: drawn as in a scenario that says nothing of it" for what in drawn]
+    notes = [f"has no {what}: drawn with the default parameters of a scenario" for what in drawn]
     return [target], notes
 
 

@@ -101,7 +101,7 @@ class ListedCount(Block):
     @classmethod
     def _ends_with_one(cls, value: tuple[float, ...]) -> tuple[float, ...]:
         if not value or not value[-1]:
-            raise ValueError("must end with one above 0")
+            raise ValueError("must end with a weight above 0")
         return value
 
     @property

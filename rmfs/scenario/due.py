@@ -65,7 +65,7 @@ class ClassesDue(Block):
         names = [one.name for one in value]
         twice = [name for name in names if names.count(name) > 1]
         if twice:
-            raise ValueError(f"name {twice[0]} occurs twice")
+            raise ValueError(f"the name {twice[0]} occurs twice")
         if abs((total := sum(one.share for one in value)) - 1.0) > 1e-6:
             raise ValueError(f"shares must sum to 1 (their sum is {total:g})")
         return value

@@ -129,7 +129,7 @@ def measured_s(path: Path) -> NDArray[np.float64]:
     except csv.Error as error:
         raise InputError(f"{path}: line {reader.line_num}: {error}") from None
     if not times:
-        raise InputError(f"{path}: holds no time")
+        raise InputError(f"{path}: contains no times")
     made = np.array(times)
     made.setflags(write=False)
     return made

@@ -112,7 +112,9 @@ def time_zero(scenario: Scenario) -> datetime | None:
     moments = [first_moment(path) for path in files if path.suffix.lower() != ".xitem"]
     first = [moment for moment in moments if moment is not None]
     if len({moment.tzinfo is None for moment in first}) > 1:
-        raise InputError(f"{files[0]}, {files[1]}: the times of one of them have no zone")
+        raise InputError(
+            f"{files[0]}, {files[1]}: the times of both files or of neither must have a time zone"
+        )
     if not first:
         return None
     return midnight(min(first)) + timedelta(seconds=scenario.time_of_day_s)
@@ -125,7 +127,7 @@ def _check_comes(first_us: int, scenario: Scenario, zero: datetime) -> None:
     if first_us > end_s * US_PER_S:
         first = zero + timedelta(microseconds=first_us)
         raise InputError(
-            f"{scenario.demand.file}: the first order comes at {first.isoformat()}, but the run "
+            f"{scenario.demand.file}: the first order arrives at {first.isoformat()}, but the run "
             f"lasts from {zero.isoformat()} to {(zero + timedelta(seconds=end_s)).isoformat()}; "
             "set scenario.start (also by --set)"
         )
@@ -133,7 +135,9 @@ def _check_comes(first_us: int, scenario: Scenario, zero: datetime) -> None:
 
 def _check_digest(config: StreamDemand | StreamReplenishment, found: str | None) -> None:
     if found != config.digest:
-        raise InputError(f"{config.file}: digest is {found}, not {config.digest} as expected")
+        raise InputError(
+            f"{config.file}: the digest of the file is {found}, not {config.digest} as expected"
+        )
 
 
 def _completed(read: SkuFileContent, config: SkuFile) -> SkuSet:

@@ -98,9 +98,10 @@ def initial_stock(
         pod = place(bundles[needed], free)
         if pod is None:
             raise InputError(
-                f"stock.order_cover: only {len(placed)} of {len(first)} bundles that orders need "
-                f"fit into the pods, which hold {capacity:g} space units; they take "
-                f"{math.fsum(skus.bundle_space[list(first)].tolist()):g}"
+                f"stock.order_cover: only {len(placed)} of the {len(first)} bundles that orders "
+                f"need fit into the pods; all bundles take "
+                f"{math.fsum(skus.bundle_space[list(first)].tolist()):g} space units, and the pods "
+                f"hold {capacity:g}"
             )
         free[pod] -= bundles[needed].space
         stored += bundles[needed].space

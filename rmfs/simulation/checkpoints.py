@@ -68,6 +68,9 @@ def resumed(path: Path, simulation: K) -> K:
         code.
     """
     if not path.is_file():
-        raise InputError(f"{path}: no checkpoint to go on from (is it of another folder or seed?)")
+        raise InputError(
+            f"{path}: there is no checkpoint to resume from; --out and --seed must be those of "
+            "the run"
+        )
     saving.refuse_other(path, simulation)
     return saving.load(type(simulation), path)

@@ -93,7 +93,7 @@ class Deciding:
         asks_optimisers = bool(controller.optimisers)
         if given is None:
             raise RuleError(
-                f"{self._whose(problem, controller)}: decide returned None, not decisions"
+                f"{self._whose(problem, controller)}: decide must return decisions, not None"
             )
         nested_ns, self._nested_ns = self._nested_ns, 0
         count = by_rule = spent_ns = 0

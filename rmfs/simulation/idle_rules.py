@@ -53,10 +53,11 @@ def idle_rules(
             continue
         waits = _waits(problem, world, after_rps=Problem.RPS in rule.waits_for)
         if waits:
-            since = "ever" if told.last_s < 0 else f"since {told.last_s:.0f} s"
+            never = "has never made a decision"
+            last = f"has made no decision since {told.last_s:.0f} s"
+            since = never if told.last_s < 0 else last
             found.append(
-                f"{problem} {told.name} has decided nothing {since} (the run ended at "
-                f"{end_s:.0f} s), while {waits}"
+                f"{problem} {told.name} {since} (the run ended at {end_s:.0f} s), although {waits}"
             )
     return found
 

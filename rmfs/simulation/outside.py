@@ -39,7 +39,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
     for name in names:
         if name not in valid:
             raise InputError(
-                f"outside {name}: is not a problem that can be decided outside; valid: "
+                f"outside {name}: this problem cannot be decided outside; valid: "
                 f"{', '.join(valid)} (for path planners see docs/write-a-planner.md)"
             )
     problems = frozenset(Problem(name) for name in names)
@@ -48,16 +48,17 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
         if choice.controller.is_dummy:
             taker = next(c for c in choices.values() if problem in c.controller.decides)
             raise InputError(
-                f"outside {problem}: {taker.problem} {taker.name} decides {problem} as well; "
-                f"choose another rule for {taker.problem}, or decide that outside"
+                f"outside {problem}: {taker.problem} {taker.name} also decides {problem}; choose "
+                f"another rule for {taker.problem}, or decide {taker.problem} outside"
             )
     task_rule = choices[Problem.TA]
     rule = task_rule.controller
     if problems & ASKED_BY_TA and rule.optimisers and not rule.goes_on:
         raise InputError(
-            f"outside {', '.join(sorted(problems & ASKED_BY_TA))}: ta {task_rule.name} asks these "
-            "questions while it carries out the answer of an optimiser, and does not say that it "
-            "can go on after one (goes_on); choose another rule for TA, or decide TA outside"
+            f"outside {', '.join(sorted(problems & ASKED_BY_TA))}: ta {task_rule.name} needs these "
+            "decisions while it carries out the answer of an optimiser, but does not declare that "
+            "it can continue after an interruption (goes_on); choose another rule for TA, or "
+            "decide TA outside"
         )
     return problems
 

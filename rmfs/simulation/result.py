@@ -183,7 +183,7 @@ class Run(Results):
 
     def _require_trace(self) -> None:
         if self.events is None:
-            raise InputError("the run has recorded no trace; simulate it with trace=True")
+            raise InputError("the run has no trace; simulate it with trace=True")
 
     def __getstate__(self) -> dict[str, Any]:
         trace = {} if self.events is None else self.trace
@@ -192,7 +192,9 @@ class Run(Results):
 
     def __getattr__(self, name: str) -> Any:
         if name in _STAYS:
-            raise AttributeError(f"{name} was not sent with the run from its process")
+            raise AttributeError(
+                f"{name} is not available, as the run was simulated in another process"
+            )
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
 

@@ -328,7 +328,7 @@ def _with_answers(pacing: PacingSettings) -> Paced:
         return pacing
     answers = measure.load_run(pacing.run).table("answers").to_dict("records")
     if not answers:
-        raise InputError(f"pacing replay: {pacing.run}: that run asked no optimiser")
+        raise InputError(f"pacing replay: {pacing.run}: no optimiser was asked in that run")
     return Replay(pacing, answers)  # type: ignore[arg-type]
 
 

@@ -47,8 +47,8 @@ def load(kind: type[K], path: Path) -> K:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
     if header["code"] != code_hash():
         raise InputError(
-            f"{path}: written by another version of rmfs ({header['code']}, this is "
-            f"{code_hash()}): begin anew"
+            f"{path}: was written by another version of rmfs ({header['code']}, this is "
+            f"{code_hash()}); start the run again"
         )
     try:
         simulation = pickle.loads(content)
@@ -75,7 +75,10 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
     now = inputs_of(simulation)
     other = [name for name in now if header["inputs"].get(name) != now[name]]
     if other:
-        raise InputError(f"{path}: its run had another {', '.join(other)}: begin anew")
+        raise InputError(
+            f"{path}: belongs to a run with another {', '.join(other)}; use the same inputs, or "
+            "start the run again"
+        )
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
@@ -95,7 +98,7 @@ def _header(line: bytes, path: Path) -> dict[str, Any]:
     except ValueError:
         header = None
     if not isinstance(header, dict) or header.get("format") != FORMAT:
-        raise InputError(f"{path}: no checkpoint ({FORMAT})")
+        raise InputError(f"{path}: is not a checkpoint ({FORMAT})")
     if not isinstance(header.get("code"), str) or not isinstance(header.get("inputs"), dict):
-        raise InputError(f"{path}: damaged (its header is not complete)")
+        raise InputError(f"{path}: damaged (its header is incomplete)")
     return header

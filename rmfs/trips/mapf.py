@@ -93,7 +93,7 @@ def _numbered(path: Path) -> list[list[int]]:
     try:
         rows = [[int(cell) for cell in line.replace(",", " ").split()] for line in _lines(path)]
         if not all(rows):
-            raise ValueError("a line without a number")
+            raise ValueError("a line does not hold a number")
     except ValueError:
         raise InputError(f"{path}: expected whole numbers, the number of lines first") from None
     if not rows or rows[0] != [len(rows) - 1]:

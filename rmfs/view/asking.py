@@ -101,5 +101,5 @@ def page_name(page: object) -> str:
         If `page` is not such a name.
     """
     if not isinstance(page, str) or not 0 < len(page) <= LONGEST_NAME:
-        raise InputError(f"page: must be a name of at most {LONGEST_NAME} characters")
+        raise InputError(f"page: must be a name of 1 to {LONGEST_NAME} characters")
     return page

@@ -92,7 +92,7 @@ def watched(
         try:
             yield live
         finally:
-            live.close("the run was given up")
+            live.close("the run was aborted")
             live.await_farewell(FAREWELL_S)
             server.shutdown()
 
@@ -110,5 +110,5 @@ def export_runs(paths: list[Path], target: Path) -> None:
 
 def _loaded(paths: list[Path]) -> list[RunFolder]:
     if len(paths) > MOST_RUNS:
-        raise InputError(f"{len(paths)} runs: at most {MOST_RUNS} stand side by side")
+        raise InputError(f"{len(paths)} runs: at most {MOST_RUNS} can be shown side by side")
     return [load_run(path) for path in paths]

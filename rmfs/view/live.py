@@ -271,7 +271,7 @@ class LiveRun:
             does not fit the run or the other controllers, or the run has ended.
         """
         if problem not in set(Problem) - FIXED:
-            raise InputError(f"{problem}: cannot be exchanged while a run goes on")
+            raise InputError(f"{problem}: cannot be exchanged during a run")
         with installed_only():  # a page may name no code
             chosen = choose(Problem(problem), table, "exchange")
         with self._meeting:

@@ -33,7 +33,7 @@ def preview(wish: Table) -> bytes:
     """
     name, changes = shipped("layout", str(wish.get("layout", "default"))), wish.get("set", {})
     if not isinstance(changes, dict):
-        raise InputError("set: values by key are wanted")
+        raise InputError("set: must map keys to values")
     paths = [(key.split("."), value) for key, value in changes.items()]
     own = [(path[1:], value) for path, value in paths if path[0] == "layout"]
     with installed_only():  # a page may name no code

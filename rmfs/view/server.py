@@ -207,14 +207,14 @@ class _Handler(BaseHTTPRequestHandler):
         if not self._is_from_here():
             return _NOT_OURS
         if not self._is_trusted():
-            told = "open the address that rmfs has printed: it has a token"
+            told = "open the address that rmfs printed, which contains a token"
             return _refusal(HTTPStatus.FORBIDDEN, told)
         return handle(json.loads(body))
 
     def _admitted(self, token: str) -> Answer:
         """Exchange a token in an address for a cookie, so that it stands in no address bar."""
         if not secrets.compare_digest(token.encode(), self.server.token.encode()):
-            return _refusal(HTTPStatus.FORBIDDEN, "this token is not that of the run")
+            return _refusal(HTTPStatus.FORBIDDEN, "this token does not belong to the run")
         cookie = f"{self.server.cookie}={self.server.token}; HttpOnly; SameSite=Strict; Path=/"
         moved = {"Set-Cookie": cookie, "Location": "/"}
         return Answer(b"", "text/plain", HTTPStatus.SEE_OTHER, moved)
@@ -236,7 +236,7 @@ class _Handler(BaseHTTPRequestHandler):
         except InputError as error:
             answer = _refusal(HTTPStatus.UNPROCESSABLE_ENTITY, str(error))
         except _NOT_UNDERSTOOD as error:
-            answer = _refusal(HTTPStatus.BAD_REQUEST, f"cannot be understood: {error}")
+            answer = _refusal(HTTPStatus.BAD_REQUEST, f"invalid request: {error}")
         except Exception as error:
             told = f"{type(error).__name__}: {error}"
             answer = _refusal(HTTPStatus.INTERNAL_SERVER_ERROR, told)
@@ -290,7 +290,7 @@ def _refusal(status: HTTPStatus, message: str) -> Answer:
     return Answer.json({"error": message}, status)
 
 
-_NOT_OURS = _refusal(HTTPStatus.FORBIDDEN, "not for this host or origin")
+_NOT_OURS = _refusal(HTTPStatus.FORBIDDEN, "requests from this host or origin are refused")
 _NOT_UNDERSTOOD = (
     *(ValueError, KeyError, TypeError, AttributeError),
     *(OverflowError, RecursionError),

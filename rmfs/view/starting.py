@@ -57,7 +57,9 @@ class Starter:
         with self._lock:
             self._running = [run for run in self._running if run.poll() is None]
             if len(self._running) >= MOST_RUNS:
-                raise InputError(f"{MOST_RUNS} runs go on already: wait until one has ended")
+                raise InputError(
+                    f"{MOST_RUNS} runs are already in progress: wait until one has ended"
+                )
             run = subprocess.Popen(
                 [sys.executable, "-m", "rmfs", "run", *arguments],
                 stdin=subprocess.DEVNULL,
@@ -85,7 +87,7 @@ def _arguments(wish: Table, results: Path) -> list[str]:
     own: dict[str, list[tuple[list[str], Any]]] = {part: [] for part in PARTS}
     for path, new in overrides:
         if path[0] not in PARTS or len(path) < 2:
-            raise InputError(f"{'.'.join(path)}: must be in one of {', '.join(PARTS)}")
+            raise InputError(f"{'.'.join(path)}: must be a key below one of {', '.join(PARTS)}")
         own[path[0]].append((path[1:], new))
     with installed_only():  # a page may name no code
         layout.load(given["layout"], own["layout"])
@@ -96,7 +98,7 @@ def _arguments(wish: Table, results: Path) -> list[str]:
         raise InputError("scenario: files can be chosen on the command line only")
     name = str(wish.get("out") or f"{'-'.join(given.values())}-live")
     if not name.replace("-", "").replace("_", "").replace(".", "").isalnum() or name[0] == ".":
-        raise InputError(f"out: a name of letters, digits, - and _ is wanted (given: {name!r})")
+        raise InputError(f"out: must be a name of letters, digits, - and _ (given: {name!r})")
     speed = wish.get("speed")
     return [
         *(word for part in PARTS for word in (f"--{part}", given[part])),
@@ -123,7 +125,7 @@ def _address(run: subprocess.Popen[str]) -> str:
     line = run.stdout.readline().strip()
     if not line.startswith("http://"):
         run.wait()
-        told: list[Any] = run.stderr.read().strip().splitlines() or ["it ended at once"]
+        told: list[Any] = run.stderr.read().strip().splitlines() or ["the run ended immediately"]
         raise InputError(str(told[-1]).removeprefix("rmfs: "))
     for stream in (run.stdout, run.stderr):
         # read on, or a full pipe would hold the run back

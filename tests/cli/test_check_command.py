@@ -42,7 +42,7 @@ def test_a_fleet_whose_electronics_alone_use_more_is_refused(capsys):
         capsys, *PLACE, BATTERY, "--set=layout.other_stations.charger.parameters.power_w=300",
         code=2,
     )  # fmt: skip
-    assert "all chargers together give 300 W: 180 W are missing in the long run" in line
+    assert "all chargers together supply only 300 W: 180 W are missing in the long run" in line
 
 
 def test_where_only_waypoints_charge_nobody_can_be_sent(capsys):
@@ -58,7 +58,7 @@ def test_where_only_waypoints_charge_nobody_can_be_sent(capsys):
         (["scenario.energy.pod_kg=-1"], "energy.pod_kg"),
         (["scenario.energy.goods_kg_per_space=-0.5"], "energy.goods_kg_per_space"),
         (["controllers.ca.below_share=0.9"], "below_share = 0.9 must be less than until_share"),
-        (["scenario.energy.battery.capacity_wh=100"], "nothing charges"),
+        (["scenario.energy.battery.capacity_wh=100"], "batteries cannot be charged"),
     ],
 )
 def test_bad_input_gets_one_line(capsys, given, says):

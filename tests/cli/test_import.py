@@ -64,9 +64,9 @@ def test_all_is_listed(folder, tmp_path, capsys):
     for line in (
         "broken.xinst: explicit layout, refused: not a complete XML file",
         "deep/small.XLAYO: parameters of a layout, written as layouts/deep/small.toml",
-        "  CollisionPenaltyTime is not used: robots never collide here",
-        "readme.md: not a file of RAWSim-O's that is imported",
-        "  HeatMode not used: RAWSim-O itself has dropped it",
+        "  CollisionPenaltyTime is not used: robots never collide in rmfs",
+        "readme.md: skipped, as it is not a RAWSim-O file that can be imported",
+        "  HeatMode not used: RAWSim-O no longer supports it",
         "  Colour unknown, left out",
         "  gives no space per unit: drawn",
         "list.xitem: list of orders and bundles, written as skus/scenarios/list.json, "
@@ -119,7 +119,7 @@ def test_two_files_that_would_make_the_same_one(tmp_path):
         (tmp_path / "theirs" / name).write_text(XLAYO)
     first, second = import_files(tmp_path / "theirs", tmp_path / "ours")
     assert first.written == [Path("layouts/a.toml")]
-    assert "layouts/a.toml was made of another file already" in second.refused
+    assert "another file was already imported as layouts/a.toml" in second.refused
 
 
 @pytest.mark.slow

@@ -195,5 +195,5 @@ def test_a_file_of_rawsimo_says_what_is_different(tmp_path, capsys):
     assert main(arguments) == 0
     told = capsys.readouterr().err
     assert "Old unknown, left out" in told
-    assert "limits count work here" in told
+    assert "rmfs limits searches by counted work" in told
     assert load_run(tmp_path / "run").footprint["controllers"] == "far"

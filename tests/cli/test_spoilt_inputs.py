@@ -77,8 +77,8 @@ def test_seeds(seed: str, capsys) -> None:
 @pytest.mark.parametrize(
     ("reference", "message"),
     [
-        (":x", "no controller of that name"),
-        (".x:y", "cannot be loaded|no module"),
+        (":x", "no controller has this name"),
+        (".x:y", "cannot be loaded|there is no module"),
         ("os:x", "has no class x|is no poa"),
         ("json:loads", "is no"),
         ("nothing.py:Y", "no file|no such file|cannot be"),
@@ -179,7 +179,7 @@ def test_export_makes_the_folder_it_needs(run_folder: Path) -> None:
 
 def test_replay_of_a_run_that_asked_nobody(run_folder: Path, capsys) -> None:
     line = refused([*RUN, *SHORT, "--pacing", f"replay={run_folder}"], capsys)
-    assert line.endswith("that run asked no optimiser")
+    assert line.endswith("no optimiser was asked in that run")
 
 
 @pytest.mark.parametrize("out", [".", "..", "../here", "/"])

@@ -56,11 +56,11 @@ def cell(name: str, value: object, row: int = 5) -> Callable[[Frame], Frame]:
 
 
 MOTION: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
-    "a robot that is not": (cell("robot", 10), "row 5: robot 10 cannot be; valid: 0 to 9"),
+    "a robot that is not": (cell("robot", 10), "row 5: robot must be from 0 to 9 (given: 10)"),
     "a place that is not": (cell("to_wp", 10**6), "to_wp 1000000 cannot be"),
     "a negative place": (cell("from_wp", -1), "from_wp -1 cannot be"),
-    "a kind that is not": (cell("kind", 7), "kind 7 cannot be; valid: 0 to 6"),
-    "a pod that is not": (cell("pod", 100), "pod 100 cannot be; valid: -1 to 99"),
+    "a kind that is not": (cell("kind", 7), "kind must be from 0 to 6 (given: 7)"),
+    "a pod that is not": (cell("pod", 100), "pod must be from -1 to 99 (given: 100)"),
     "a time before the start": (cell("t0_us", -1), "t0_us -1 cannot be"),
     "an end before its begin": (cell("t1_us", 0), "ends (t1_us) before it starts"),
     "no heading": (cell("heading0_rad", float("nan")), "heading0_rad: a value is missing"),
@@ -77,15 +77,15 @@ MOTION: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
     "no column": (lambda frame: frame.drop(columns="pod"), "column pod missing"),
 }
 EVENTS: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
-    "a kind that is not": (cell("kind", "explosion"), "row 5: kind is none of stock, task"),
+    "a kind that is not": (cell("kind", "explosion"), "row 5: kind must be one of stock, task"),
     "a time before the start": (cell("time_us", -1), "time_us -1 cannot be"),
     "a time after the end": (cell("time_us", 10**12), "time_us 1000000000000 cannot be"),
     "a time before the row before": (
         lambda frame: frame.assign(time_us=frame["time_us"].to_numpy()[::-1]),
-        "it is earlier than the row before",
+        "time_us is less than in the row before",
     ),
-    "a station that is not": (cell("station", 99), "station 99 cannot be; valid: -1 to 3"),
-    "a SKU that is not": (cell("sku", 100), "sku 100 cannot be; valid: -1 to 99"),
+    "a station that is not": (cell("station", 99), "station must be from -1 to 3 (given: 99)"),
+    "a SKU that is not": (cell("sku", 100), "sku must be from -1 to 99 (given: 100)"),
     "units below none": (cell("units", -4), "units -4 cannot be"),
     "numbers for words": (lambda frame: frame.assign(kind=1), "kind must hold words"),
 }

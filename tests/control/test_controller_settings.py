@@ -65,7 +65,7 @@ def test_what_is_shown_can_be_read_again(tmp_path) -> None:
         ({"psa": {"name": "neares"}}, "psa.name: no psa rule named neares; did you mean"),
         ({"psa": {"name": 3}}, "psa.name: must be a string"),
         ({"rps": {"buffer_threshold": 1.5}}, "rps: buffer_threshold: "),
-        ({"psa": {"name": "nowhere:Rule"}}, "nowhere:Rule: no module nowhere"),
+        ({"psa": {"name": "nowhere:Rule"}}, "nowhere:Rule: there is no module nowhere"),
         ({"psa": {"name": "rmfs.control.psa:P"}}, "is not a controller"),
         ({"psa": {"name": "rmfs.control.sa.all:AllStations"}}, "solves sa, not psa"),
         ({"pps": {"pick_pod": ["nearst"]}}, "pick_pod"),

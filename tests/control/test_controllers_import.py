@@ -126,7 +126,7 @@ def test_every_method_has_its_rule(tmp_path: Path, tag: str, kind: str, problem:
 def test_what_is_dead_or_unknown_is_named(tmp_path: Path):
     body = block("ReplenishmentBatchingConfig", "Random", Reactive="true", Novelty=1)
     notes = read_xconf(written(tmp_path, body + "<Extra/>")).notes
-    assert "ReplenishmentBatchingConfig: Reactive not used: RAWSim-O itself has dropped it" in notes
+    assert "ReplenishmentBatchingConfig: Reactive not used: RAWSim-O no longer supports it" in notes
     assert any(note.startswith("ReplenishmentBatchingConfig: Novelty unknown") for note in notes)
     assert any(note.startswith("Extra unknown") for note in notes)
 
@@ -152,7 +152,7 @@ def test_import_writes_a_set_that_says_the_same(tmp_path: Path, capsys):
     path = written(tmp_path, body)
     target = tmp_path / "ours.toml"
     assert main(["controllers", "import", str(path), "--out", str(target)]) == 0
-    assert "Dummy becomes time-windows" in capsys.readouterr().err
+    assert "Dummy is replaced by time-windows" in capsys.readouterr().err
     assert load(target).choices == load(path).choices
     assert main(["controllers", "import", str(path), "--out", str(target)]) == 2
 

@@ -67,7 +67,7 @@ def test_a_dummy_decides_nothing(problem) -> None:
         ),
         (
             {"pps": {"reserve": "assigned"}},
-            "reserve must reach as far as consider",
+            "reserve must include the requests of consider",
         ),
     ],
 )

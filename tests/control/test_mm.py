@@ -110,9 +110,9 @@ class TestFile:
     @pytest.mark.parametrize(
         ("entry", "message"),
         [
-            ({"at_s": 1, "at_share": 0.5, "psa": "random"}, "needs exactly one of at_s"),
-            ({"psa": "random"}, "needs exactly one of at_s"),
-            ({"at_s": 1}, "names no rule"),
+            ({"at_s": 1, "at_share": 0.5, "psa": "random"}, "must have exactly one of at_s"),
+            ({"psa": "random"}, "must have exactly one of at_s"),
+            ({"at_s": 1}, "must name a rule for at least one problem"),
             ({"at_share": 1.5, "psa": "random"}, "at_share"),
             ({"at_s": 1, "psa": "neares"}, "no psa rule named neares; did you mean nearest?"),
             ({"at_s": 1, "psa": {"metrik": "time"}}, "unknown key psa.metrik; did you mean metric"),

@@ -114,7 +114,7 @@ class TestQueuedOrders:
         assert not rule.serves(1, 0)
 
     def test_what_is_brought_must_be_bound(self) -> None:
-        with pytest.raises(ValueError, match="reserve must reach as far as consider"):
+        with pytest.raises(ValueError, match="reserve must include the requests of consider"):
             RandomPod.parameters_model(reserve="assigned")
 
     def test_binding_leaves_the_counts_in_order(self, pooled) -> None:

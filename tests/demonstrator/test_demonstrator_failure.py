@@ -72,9 +72,9 @@ def test_what_was_left_out_stays_left_out(tmp_path):
 def test_only_a_failure_can_be_left_out(tmp_path):
     path = tmp_path / "journal"
     journal = Journal(path, {})
-    with pytest.raises(InputError, match="has no failure"):
+    with pytest.raises(InputError, match="contains no failure"):
         Journal(path, {}, past_failure=True)
     journal.note_failure(50_000, "x")
     Journal(path, {}, past_failure=True).note_failure(50_000, "x")
-    with pytest.raises(InputError, match=r"0\.05 s fails also without"):
+    with pytest.raises(InputError, match=r"0\.05 s fails even without"):
         Journal(path, {}, past_failure=True)

@@ -162,7 +162,7 @@ def test_a_name_that_is_not_expected_is_refused(hub, caplog):
         while "is expected" not in caplog.text and time.monotonic() < end:
             guest.poll(0)
             hub.poll(0, 0.005)
-    assert "nobody called 'robot-9' is expected" in caplog.text
+    assert "no robot named 'robot-9' is expected" in caplog.text
     assert hub.present == frozenset()
 
 

@@ -51,8 +51,8 @@ def framed(text):
     [
         (pack({"a": 1}, b"another key", ROBOT), "nobody with the secret"),
         (pack({"a": 1}, KEY, SERVER), "nobody with the secret"),
-        ((LARGEST + 1).to_bytes(4, "big"), "a frame of 65537 bytes"),
-        (b"GET / HTTP/1.1\r\n\r\n", "a frame of"),
+        ((LARGEST + 1).to_bytes(4, "big"), "a frame has 65537 bytes"),
+        (b"GET / HTTP/1.1\r\n\r\n", "a frame has"),
         (framed(b"{]"), "not JSON"),
         (framed(b"\xff"), "not JSON"),
         (framed(b"[" * 60_000), "not JSON"),

@@ -64,7 +64,7 @@ def test_tags(plan, tmp_path):
         (lines[:-1], "waypoint 35 has no tag"),
         ([*lines[:-1], "36;AA"], "line 36: must be WAYPOINT;TAG"),
         ([*lines[:-1], "35,AA"], "line 36: must be WAYPOINT;TAG"),
-        ([*lines[:-1], "35;E000"], "line 36: waypoint or tag for the second time"),
+        ([*lines[:-1], "35;E000"], "line 36: the waypoint or the tag occurs twice"),
     ]:
         file.write_text("\n".join(wrong))
         with pytest.raises(InputError, match=why):

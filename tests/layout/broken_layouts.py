@@ -90,7 +90,7 @@ def assert_found(layout, severity, element, message):
 
 
 def inner_place(layout):
-    """Return a storage place and the storage places and road waypoints next to it."""
+    """Return a storage location and the storage locations and road waypoints next to it."""
     place = int(places(layout)[0])
     around = {b for a, b in edges(layout) if a == place}
     return place, {v for v in around if layout.is_storage[v]}, around

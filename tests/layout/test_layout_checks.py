@@ -36,19 +36,19 @@ def test_more_pods_than_places():
     layout = small()
     many = np.resize(places(layout), layout.is_storage.sum() + 1).astype(np.int32)
     broken = replace(layout, pod_waypoint=many, pod_capacity=np.ones(len(many)))
-    assert_found(broken, IMPOSSIBLE, "pods", "37 pods, but only 36 storage places")
+    assert_found(broken, IMPOSSIBLE, "pods", "37 pods, but only 36 storage locations")
 
 
 def test_pod_outside_storage():
     layout = small()
     broken = replace(layout, pod_waypoint=placed(layout.pod_waypoint, 3, road(layout)[0]))
-    assert_found(broken, IMPOSSIBLE, "pod 3", "does not stand at a storage place")
+    assert_found(broken, IMPOSSIBLE, "pod 3", "does not stand at a storage location")
 
 
 def test_two_pods_at_one_place():
     layout = small()
     broken = replace(layout, pod_waypoint=placed(layout.pod_waypoint, 3, layout.pod_waypoint[5]))
-    where = f"storage place {layout.pod_waypoint[5]} "
+    where = f"storage location {layout.pod_waypoint[5]} "
     assert_found(broken, IMPOSSIBLE, where, "2 pods stand here at the start (pods 3, 5)")
 
 
@@ -69,13 +69,13 @@ def test_more_robots_than_resting_places():
         robot_heading_rad=np.zeros(37),
         robot_kind=np.zeros(37, dtype=np.int16),
     )
-    assert_found(broken, NOT_WELL_FORMED, "robots", "only 36 storage places to rest at (W2")
+    assert_found(broken, NOT_WELL_FORMED, "robots", "only 36 storage locations to rest at (W2")
 
 
 def test_station_at_a_storage_place():
     layout = small()
     broken = pick(layout, waypoint=int(places(layout)[0]))
-    assert_found(broken, NOT_WELL_FORMED, "pick station 0", "stands at a storage place")
+    assert_found(broken, NOT_WELL_FORMED, "pick station 0", "stands at a storage location")
 
 
 def test_two_stations_at_one_waypoint():

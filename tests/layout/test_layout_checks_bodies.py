@@ -39,7 +39,12 @@ def test_waypoints_at_one_place():
 
 def test_pods_wider_than_the_grid():
     layout = replace(small(), pod_radius_m=0.51)
-    assert_found(layout, IMPOSSIBLE, "waypoint", "less than the two radii that pass there (1.02 m)")
+    assert_found(
+        layout,
+        IMPOSSIBLE,
+        "waypoint",
+        "less than the sum of the two radii that pass there (1.02 m)",
+    )
 
 
 def test_empty_warehouse_needs_room_for_robots_only():

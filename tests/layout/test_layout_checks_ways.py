@@ -25,28 +25,28 @@ def test_storage_place_nobody_reaches():
     layout = small()
     place, _, _ = inner_place(layout)
     broken = without(layout, lambda _, head: head == place)
-    assert_found(broken, IMPOSSIBLE, f"storage place {place} ", "no way leads to it")
+    assert_found(broken, IMPOSSIBLE, f"storage location {place} ", "no path leads to it")
 
 
 def test_storage_place_nobody_leaves():
     layout = small()
     place, _, _ = inner_place(layout)
     broken = without(layout, lambda tail, _: tail == place)
-    assert_found(broken, IMPOSSIBLE, f"storage place {place} ", "no way leads away from it")
+    assert_found(broken, IMPOSSIBLE, f"storage location {place} ", "no path leads away from it")
 
 
 def test_station_nobody_reaches():
     layout = small()
     station = layout.pick_stations[0].waypoint
     broken = without(layout, lambda _, head: head == station)
-    assert_found(broken, IMPOSSIBLE, "pick station 0", "no way leads to it")
+    assert_found(broken, IMPOSSIBLE, "pick station 0", "no path leads to it")
 
 
 def test_station_nobody_leaves():
     layout = small()
     station = layout.replenishment_stations[0].waypoint
     broken = without(layout, lambda tail, _: tail == station)
-    assert_found(broken, IMPOSSIBLE, "replenishment station 0", "no way leads away from it")
+    assert_found(broken, IMPOSSIBLE, "replenishment station 0", "no path leads away from it")
 
 
 def test_elevator_nobody_reaches():
@@ -55,20 +55,20 @@ def test_elevator_nobody_reaches():
     broken = without(layout, lambda _, head: head == shaft[0])
     lonely = replace(broken.elevators[0], travel_s={(shaft[0], shaft[1]): 10.0})
     broken = replace(broken, elevators=(lonely,))
-    assert_found(broken, IMPOSSIBLE, "elevator 0", "no way leads to it")
+    assert_found(broken, IMPOSSIBLE, "elevator 0", "no path leads to it")
 
 
 def test_tiers_without_rides():
     layout = two_tiers()
     broken = replace(layout, elevators=(replace(layout.elevators[0], travel_s={}),))
-    assert_found(broken, IMPOSSIBLE, "tier 1", "no way leads to it")
+    assert_found(broken, IMPOSSIBLE, "tier 1", "no path leads to it")
 
 
 def test_robot_that_cannot_reach_anything():
     layout = small()
     prison = int(layout.robot_waypoint[2])
     broken = without(layout, lambda tail, _: tail == prison)
-    assert_found(broken, IMPOSSIBLE, "robot 2", "cannot reach the stations and storage places")
+    assert_found(broken, IMPOSSIBLE, "robot 2", "cannot reach the stations and storage locations")
 
 
 def test_place_reached_beneath_pods_only():
@@ -76,9 +76,9 @@ def test_place_reached_beneath_pods_only():
     layout = small()
     place, inner, _ = inner_place(layout)
     broken = without(layout, lambda tail, head: head == place and tail not in inner)
-    assert_found(broken, IMPOSSIBLE, f"storage place {place} ", "cannot leave pick station 0")
+    assert_found(broken, IMPOSSIBLE, f"storage location {place} ", "cannot leave pick station 0")
     broken = without(layout, lambda tail, head: tail == place and head not in inner)
-    assert_found(broken, IMPOSSIBLE, f"storage place {place} ", "cannot reach pick station 0")
+    assert_found(broken, IMPOSSIBLE, f"storage location {place} ", "cannot reach pick station 0")
 
 
 def test_station_behind_storage_is_out_of_reach_for_pods():
@@ -110,9 +110,16 @@ def test_place_behind_another_place():
     layout = small()
     place, inner, _ = inner_place(layout)
     broken = without(layout, lambda tail, head: head == place and tail not in inner)
-    assert_found(broken, NOT_WELL_FORMED, f"storage place {place} ", "no aisle leads to it")
+    assert_found(
+        broken, NOT_WELL_FORMED, f"storage location {place} ", "cannot be reached from the aisles"
+    )
     broken = without(layout, lambda tail, head: tail == place and head not in inner)
-    assert_found(broken, NOT_WELL_FORMED, f"storage place {place} ", "leads to no aisle")
+    assert_found(
+        broken,
+        NOT_WELL_FORMED,
+        f"storage location {place} ",
+        "the aisles cannot be reached from it",
+    )
 
 
 def test_queue_with_a_closed_entrance():
@@ -136,4 +143,4 @@ def test_a_charger_nobody_reaches():
     charger = layout.other_stations[0]
     own = {charger.waypoint, *charger.queue}
     broken = without(layout, lambda tail, head: head in own and tail not in own)
-    assert_found(broken, IMPOSSIBLE, "charger station 0", "no way leads to it")
+    assert_found(broken, IMPOSSIBLE, "charger station 0", "no path leads to it")

@@ -98,7 +98,7 @@ def test_import_of_an_instance(tmp_path, monkeypatch):
     source = INSTANCES / "core/1-3-3-15-64.xinst"
     result = run("import", source)
     assert result.exit_code == 0
-    assert "note: 3 pick stations without ItemPickTime" in result.output
+    assert "note: 3 pick stations have no ItemPickTime" in result.output
     assert load(tmp_path / "1-3-3-15-64.json").waypoints == load(source).waypoints
     assert "--force replaces it" in refused("import", source)
 

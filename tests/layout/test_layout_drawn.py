@@ -143,10 +143,10 @@ WRONG = {
     "robts = 3\n---\nP.R\n.x.\n": "unknown key robts; did you mean robots?",
     "name = \n---\nP.R\n.x.\n": "the head is not valid TOML",
     'name = "a"\nP.R\n.x.\n': "line 1, column 1: 'n' is not a valid sign",
-    "---\n\n\n": "holds no picture of 1 to 1000000 cells",
+    "---\n\n\n": "must hold a picture of 1 to 1000000 cells",
     "P.q\n.x.\nR..\n": "line 1, column 3: 'q' belongs to no queue: no path over q, or",
-    "...\n.x.\n": "there is no pick station, no replenishment station",
-    "P.R\n...\n": "there is no storage place",
+    "...\n.x.\n": "the layout has no pick station, no replenishment station",
+    "P.R\n...\n": "the layout has no storage location",
 }
 
 
@@ -232,7 +232,7 @@ WRONG_STATIONS = {
     "pick_stations = [[[1, 1]]]": "pick_stations.0: [1, 1] is not a free cell",
     "pick_stations = [[[6, 0], [6, 2]]]": "pick_stations.0: [6, 2] is not adjacent to the previous",
     "pick_stations = [[[6, 0]], [[6, 0]]]": "pick_stations.1: [6, 0] is given twice",
-    "pick_stations = []": "there is no pick station",
+    "pick_stations = []": "the layout has no pick station",
     "pick_stations = [[6, 0]]": "pick_stations.0.0: Input should be a valid list",
 }
 

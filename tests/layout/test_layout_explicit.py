@@ -118,7 +118,7 @@ def at(*path):
     [
         (("format",), "rmfs-layout/1", "format: Input should be 'rmfs-layout-explicit/1'"),
         (("waypoints", 0, "to"), [9], "waypoints.0.to: there is no waypoint 9 (last: 3)"),
-        (("waypoints", 0, "to"), [0], "waypoints.0.to: leads to itself"),
+        (("waypoints", 0, "to"), [0], "waypoints.0.to: must not contain the waypoint itself"),
         (("waypoints", 0, "to"), [-1], "waypoints.0.to.0: "),
         (("waypoints", 0, "tier"), 1, "waypoints.0.tier: there is no tier 1"),
         (("waypoints", 0, "x_m"), "left", "waypoints.0.x_m: "),
@@ -133,7 +133,7 @@ def at(*path):
         (
             ("elevators",),
             [{"queues": [[0], [1]], "rides": [{"origin": 0, "destination": 2, "travel_s": 1}]}],
-            "elevators.0.rides.0.destination: 2 is not the head of its queues",
+            "elevators.0.rides.0.destination: 2 is not the first waypoint of one of its queues",
         ),
         (("waypoints",), [], "waypoints: "),
     ],

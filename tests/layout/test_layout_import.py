@@ -98,7 +98,7 @@ def test_instance_by_hand(tmp_path):
     assert (station.waypoint, station.order_slots, station.activation) == (2, 12, 1)
     assert station.unit_pick_s == station.unit_transfer_s == 10.0
     assert notes == [
-        "1 pick stations without ItemPickTime: the robot is held as long as the station "
+        "1 pick stations have no ItemPickTime: a unit occupies the robot as long as the station "
         "(ItemTransferTime)"
     ]
 
@@ -137,9 +137,9 @@ def test_what_is_filled_in_is_noted(tmp_path):
     assert layout.replenishment_stations[0].queue == (1,)
     assert layout.x_m[2] == 1.4
     for part in (
-        "InputStation.ActivationOrderID missing",
-        "1 pods named by no waypoint",
-        "InputStation 1: without queue",
+        "InputStation.ActivationOrderID is missing",
+        "1 pods are named by no waypoint",
+        "InputStation 1: has no queue",
         "1 waypoints moved",
     ):
         assert any(part in note for note in notes), part
@@ -162,7 +162,7 @@ def test_what_is_filled_in_is_noted(tmp_path):
         ('PodStorageLocation="true"', 'PodStorageLocation="yes"', "expected true or false"),
         ("103/200/10", "103/200", "Elevator 0: expected a timing FROM/TO/SECONDS"),
         ("102/102", "102", "OutputStation 1: expected a queue place KEY/PLACE"),
-        ("102/102", "101/102", "OutputStation 1: a queue belongs to another waypoint"),
+        ("102/102", "101/102", "OutputStation 1: one of its queues belongs to another waypoint"),
     ],
 )
 def test_wrong_instances_are_refused(old, new, expected, tmp_path):
@@ -216,8 +216,8 @@ def test_parameters_by_hand(tmp_path):
     assert len(layout.replenishment_stations) == 4
     assert layout.robot_kinds[0].acceleration_m_s2 == 0.5
     assert layout.robot_kinds[0].deceleration_m_s2 == 1.0
-    assert "CollisionPenaltyTime is not used: robots never collide here" in notes
-    assert "Seed is absent: 0" in notes
+    assert "CollisionPenaltyTime is not used: robots never collide in rmfs" in notes
+    assert "Seed is missing: 0 is used" in notes
 
 
 @pytest.mark.parametrize(
@@ -247,7 +247,7 @@ def test_missing_and_unknown_files(tmp_path):
     other = tmp_path / "layout.yaml"
     other.write_text("")
     endings = r"\.toml, \.json, \.txt, \.map, \.xlayo or \.xinst"
-    with pytest.raises(InputError, match=f"expected {endings}"):
+    with pytest.raises(InputError, match=f"must be {endings}"):
         load_with_notes(other)
     assert {"default", "basic"} <= set(names())
 

@@ -49,5 +49,5 @@ def test_a_place_that_all_must_pass_is_counted(tmp_path):
 def test_check_prints_them(capsys):
     assert main(["layout", "check", "small"]) == 0
     told = capsys.readouterr().out
-    assert "way from a storage place to the nearest pick station: " in told
-    assert "waypoints whose closure would cut the floor apart: " in told
+    assert "distance from a storage location to the nearest pick station: " in told
+    assert "waypoints whose closure would disconnect the floor: " in told

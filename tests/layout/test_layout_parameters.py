@@ -64,10 +64,13 @@ def test_defaults_are_those_of_the_reference():
         ({"elevators": {"north": 1}}, "elevators: must be 0 with one tier (given: 1)"),
         ({"pick_stations": {}}, "pick_stations: at least one is needed"),
         ({"replenishment_stations": {}}, "replenishment_stations: at least one is needed"),
-        ({"pick_stations": {"east": 5}}, "the east side has room for 4, half its aisles (given: 5"),
+        (
+            {"pick_stations": {"east": 5}},
+            "the east side has room for 4, half the number of its aisles",
+        ),
         ({"robots": 841}, "robots: a tier has only 840 road tiles (given: 841)"),
-        ({"robots": 505}, "robots: a tier has only 504 storage places to rest at (given: 505)"),
-        ({"pod_share": 0.001}, "pod_share: leaves no pod for 504 storage places"),
+        ({"robots": 505}, "robots: a tier has only 504 storage locations to rest at (given: 505)"),
+        ({"pod_share": 0.001}, "pod_share: gives no pod with 504 storage locations"),
         ({"horizontal_aisles": 10**9}, "less than or equal to 1000"),
         (
             {
@@ -82,7 +85,7 @@ def test_defaults_are_those_of_the_reference():
                 "hall_pattern": "highway",
                 "vertical_aisles": 5,
             },
-            'vertical_aisles: "highway" halls round single-lane aisles need an even number',
+            'vertical_aisles: "highway" halls around single-lane aisles need an even number',
         ),
     ],
 )

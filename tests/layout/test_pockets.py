@@ -54,5 +54,5 @@ def test_tiers_have_their_own():
 
 
 def test_more_than_there_are_blocks_are_refused():
-    with pytest.raises(InputError, match="room for 63 stations within, one per block"):
+    with pytest.raises(InputError, match=r"room for 63 stations .*, one per block"):
         with_chargers(64)

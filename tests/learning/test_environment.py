@@ -255,8 +255,11 @@ def test_a_picture_of_the_run() -> None:
         ({"problems": ["pp"]}, "problem pp: valid: poa"),
         ({"candidates": 0}, "candidates 0: must be 1 or more"),
         ({"reward": "profit"}, "reward profit: valid: units"),
-        ({"rankings": {"pick pod": {"price": 1}}}, "rankings.pick pod.price: valid: units"),
-        ({"observation": "picture"}, "observation picture: valid: dict, flat"),
+        (
+            {"rankings": {"pick pod": {"price": 1}}},
+            "rankings.pick pod.price: unknown feature; valid: units",
+        ),
+        ({"observation": "picture"}, "observation: must be dict or flat (given: picture)"),
     ],
 )
 def test_wrong_settings_are_refused(given: dict[str, Any], told: str) -> None:

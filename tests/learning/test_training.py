@@ -113,5 +113,5 @@ def test_wrong_tasks_are_refused(given: dict[str, Any], told: str) -> None:
 
 
 def test_a_feature_that_does_not_exist_is_named() -> None:
-    with pytest.raises(InputError, match=r"price is not a feature here; valid: away_s, back_s"):
+    with pytest.raises(InputError, match=r"price is not a feature of .*; valid: away_s, back_s"):
         units(psa={"name": "linear", "weights": {"price": 1.0}})

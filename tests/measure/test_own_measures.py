@@ -211,9 +211,12 @@ def test_an_installed_one_is_found_by_its_name(folder: Path, monkeypatch) -> Non
         ('("pods_used",)', "'pods_used' is not an rmfs.measure.Column"),
         ('(Column("units_per_h", "float64", "", ""),)', "units_per_h: a column of this name"),
         ('(Column("replication", "int64", "", ""),)', "replication: a column of this name"),
-        ('(Column("Pods used", "int64", "", ""),)', "must be lower-case letters, digits and _"),
+        (
+            '(Column("Pods used", "int64", "", ""),)',
+            "must consist of lower-case letters, digits and _",
+        ),
         ('(Column("own", "int", "", ""),)', "type 'int'; valid: int64, Int64, float64, str, bool"),
-        ('(Column("x", "int64", "", "", better="high"),)', "better 'high'; valid: more, less"),
+        ('(Column("x", "int64", "", "", better="high"),)', "better must be more, less or neither"),
     ],
 )
 def test_what_cannot_be_a_measure_is_refused(folder: Path, columns: str, message: str) -> None:
@@ -242,5 +245,5 @@ def test_what_a_measure_says_must_be_what_it_declares(returned: str, message: st
     run = rmfs.simulate("basic", "basic", "default", overrides=short, measures=[Odd])
     with pytest.raises(InputError, match=f"measure .*Odd: {message}"):
         _ = run.footprint
-    with pytest.raises(InputError, match="Odd has a column x as well"):
+    with pytest.raises(InputError, match="Odd also has a column x"):
         find_all([Odd, type("Other", (Odd,), {})])

@@ -75,7 +75,7 @@ def test_a_trace_that_is_cut_off_is_refused(
 ) -> None:
     whole = (folder.path / "trace.parquet").read_bytes()
     (tmp_path / "trace.parquet").write_bytes(whole[: int(share * len(whole))])
-    with pytest.raises(InputError, match="cut off or not a trace"):
+    with pytest.raises(InputError, match="truncated or not a trace"):
         _ = RunFolder(tmp_path, {}).trace
 
 

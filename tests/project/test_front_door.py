@@ -154,7 +154,7 @@ def test_a_run_travels(run: rmfs.Run, here: Path) -> None:
         assert twin.table(name).equals(run.table(name)), name
     saved = twin.save("results/twin")
     assert saved.check().ok and saved.table("answers").equals(run.table("answers"))
-    with pytest.raises(AttributeError, match="world was not sent"):
+    with pytest.raises(AttributeError, match="world is not available"):
         _ = twin.world
     again = pickle.loads(pickle.dumps(twin))
     assert again.footprint.equals(run.footprint)

@@ -63,12 +63,16 @@ def test_a_reference_to_a_file_is_made_independent_of_the_folder(folder: Path) -
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ("nowhere.to:Mine", r"nowhere.to:Mine: no module nowhere.to, neither installed nor in .*"),
-        ("missing.py:Mine", r"missing.py:Mine: no file .*/missing.py"),
+        (
+            "nowhere.to:Mine",
+            r"nowhere.to:Mine: there is no module nowhere.to, neither installed nor in "
+            ".*",
+        ),
+        ("missing.py:Mine", r"missing.py:Mine: there is no file .*/missing.py"),
         ("watch_me:Yours", "watch_me:Yours: watch_me has no class Yours; its classes: Mine"),
         ("watch_me:WORD", r"watch_me:WORD: is not an observer \(a class derived from rmfs"),
         ("broken_one:A", r"broken_one:A: cannot be loaded \(ZeroDivisionError: division by zero"),
-        ("watch_me", "watch_me: no observer of that name; expected module:Class or"),
+        ("watch_me", "watch_me: no observer has this name; expected module:Class or"),
     ],
 )
 def test_what_is_wrong_is_said(folder: Path, given: str, message: str) -> None:

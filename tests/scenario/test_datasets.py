@@ -85,9 +85,9 @@ EXPECTED = {
 LEFT_OUT = {
     "instacart": {"lines of orders that are not used": 1, "orders without a line": 1},
     "online-retail": {
-        "lines that are no products (postage, fees)": 1,
+        "lines that are not products (postage, fees)": 1,
         "lines of cancelled or corrected invoices": 1,
-        "lines that take units back": 1,
+        "lines that are returns": 1,
     },
     "jd": {},
     "olist": {
@@ -211,7 +211,7 @@ def test_other_refusals(tmp_path):
     with pytest.raises(InputError, match="left out: 2 orders not asked for"):
         convert("jd", written(tmp_path, SETS["jd"]), out, end=datetime(2000, 1, 1))
     (tmp_path / "bad.csv").write_bytes(b"order_ID\xff\n")
-    with pytest.raises(InputError, match="not text in UTF-8"):
+    with pytest.raises(InputError, match="is not UTF-8 text"):
         convert("jd", [tmp_path / "bad.csv"], out)
 
 

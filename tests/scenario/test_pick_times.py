@@ -61,7 +61,7 @@ def test_measured_times_are_drawn_evenly(tmp_path):
         ("", "line 1: must have one column time_s"),
         ("time\n3\n", "line 1: must have one column time_s"),
         ("time_s,time_s\n3,4\n", "line 1: must have one column time_s"),
-        ("time_s\n", "holds no time"),
+        ("time_s\n", "contains no times"),
         ("time_s\n3\n0\n", "line 3: time_s must be"),
         ("time_s\n-1\n", "line 2: time_s must be"),
         ("time_s\nnan\n", "line 2: time_s must be"),
@@ -83,7 +83,7 @@ def test_broken_files_are_told_in_one_line(tmp_path, text, told):
 def test_a_file_that_is_no_text(tmp_path):
     file = tmp_path / "times.csv"
     file.write_bytes(b"time_s\n\xff\xfe\n")
-    with pytest.raises(InputError, match="not text in UTF-8"):
+    with pytest.raises(InputError, match="is not UTF-8 text"):
         measured_s(file)
 
 

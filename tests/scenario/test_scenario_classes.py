@@ -75,7 +75,10 @@ def test_a_file_says_the_class_and_with_it_the_offset(tmp_path, skus):
 @pytest.mark.parametrize(
     ("wrong", "told"),
     [
-        (("express", "expres"), "line 4: priority expres is no class; valid: express, prime, ord"),
+        (
+            ("express", "expres"),
+            "line 4: priority expres is not a class; valid: express, prime, ord",
+        ),
         (("2,1,500,prime", "2,1,500,express"), "line 3: priority differs from the line before"),
     ],
 )

@@ -49,7 +49,7 @@ def test_the_cover_is_stored_before_anything_is_drawn(few_skus: SkuSet):
 
 
 def test_a_cover_that_does_not_fit_is_refused(few_skus: SkuSet):
-    told = r"stock.order_cover: only \d+ of 99 bundles .* which hold 60 space units; they take"
+    told = r"order_cover: only \d+ of the 99 bundles .* all bundles take .* and the pods hold 60"
     with pytest.raises(InputError, match=told):
         initial_stock(few_skus, np.full(2, 30.0), 0.0, seed=1, first=[0] * 99)
 

@@ -108,12 +108,12 @@ def test_the_shipped_scenario():
 BROKEN = {
     "": "no word",
     "\n \n": "no word",
-    "a b\n": "line 1: 'a b' has other signs than letters",
-    "ab1\nc-d\n": "line 1: 'ab1' has other signs than letters; line 2: 'c-d' has",
-    "a" * 65: "line 1: longer than 64 letters",
+    "a b\n": "line 1: 'a b' must consist of letters only",
+    "ab1\nc-d\n": "line 1: 'ab1' must consist of letters only; line 2: 'c-d' has",
+    "a" * 65: "line 1: is longer than 64 letters",
     "a" * 1000: "line 1: too long",
-    b"\xff\xfe\x00": "not text in UTF-8",
-    b"ab\x00": "has other signs than letters",
+    b"\xff\xfe\x00": "is not UTF-8 text",
+    b"ab\x00": "must consist of letters only",
 }
 
 

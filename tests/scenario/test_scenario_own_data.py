@@ -109,14 +109,14 @@ def test_orders_and_bundles_have_one_time_zero(tmp_path: Path, few_skus: SkuSet)
     assert bundle_stream(given, few_skus, 100.0).time_us.tolist() == [7_200_000_000, 14_400_000_000]
     assert order_stream(given, few_skus).time_us[0] == 12 * 3600 * 10**6
     bundles.write_text("time,sku,quantity\n2026-03-01T00:00:00Z,2,3\n")
-    with pytest.raises(InputError, match="the times of one of them have no zone"):
+    with pytest.raises(InputError, match="of both files or of neither must have"):
         time_zero(given)
 
 
 def test_a_run_that_ends_before_the_first_order_is_refused(tmp_path: Path, few_skus: SkuSet):
     given = scenario(demand=on_file(written(tmp_path, DATED)))
     told = (
-        r"orders.csv: the first order comes at 2026-03-01T08:00:00, but the run lasts from "
+        r"orders.csv: the first order arrives at 2026-03-01T08:00:00, but the run lasts from "
         r"2026-03-01T00:00:00 to 2026-03-01T01:00:00; set scenario.start"
     )
     with pytest.raises(InputError, match=told):
@@ -127,10 +127,10 @@ WRONG = {
     "2026-13-01,A,0,1,\n": "line 2: time must be a number of s, or a time such as "
     "2026-03-01T08:00:00 (given: '2026-13-01')",
     "2026-03-01T08:00,A,0,1,\n5,B,0,1,\n": "line 3: time must be a time such as "
-    "2026-03-01T08:00:00, as before (given: '5')",
+    "2026-03-01T08:00:00, as in earlier lines (given: '5')",
     "5,A,0,1,\n2026-03-01T08:00,B,0,1,\n": "line 3: time must be a number of s, as before (given",
     "2026-03-01T08:00,A,0,1,90\n": "line 2: due must be a time such as",
-    "2026-03-01T08:00Z,A,0,1,\n2026-03-01T09:00,B,0,1,\n": "line 3: time must have a zone, as "
+    "2026-03-01T08:00Z,A,0,1,\n2026-03-01T09:00,B,0,1,\n": "line 3: time must have a time zone, as "
     "2026-03-01T00:00:00+00:00 has (given: 2026-03-01T09:00)",
     "2026-03-02T08:00,A,0,1,\n2026-03-01T09:00,B,0,1,\n": "line 3: time must be from "
     "2026-03-02T00:00:00, which is time zero (scenario.start), to 1e+09 s later (given",

@@ -110,7 +110,7 @@ EXPORTED = "2d30ca5d666aa3f8735e15fe5e718d70fce93aa9dc2289be74ef83b100eb65ea"
 def test_another_file_than_the_published_one_is_refused(tmp_path: Path, few_skus: SkuSet):
     path = written(tmp_path, ORDERS)
     given = scenario(demand={"mode": "stream", "file": str(path), "digest": "0" * 64})
-    with pytest.raises(InputError, match=r"orders.csv: digest is [0-9a-f]{64}, not 0000"):
+    with pytest.raises(InputError, match=r"the digest of the file is [0-9a-f]{64}, not 0000"):
         order_intake(given, few_skus, SITE, 1)
 
 
@@ -220,15 +220,15 @@ WRONG = {
     HEAD + "inf,A,0,1,\n": "line 2: time must be a number (given: 'inf')",
     HEAD + "1e99,A,0,1,\n": "line 2: time must be from 0",
     HEAD + "5,A,0,1,\n3,B,0,1,\n": "line 3: time 3 is before that of the order before",
-    HEAD + "5,A,0,1,4\n": "line 2: due is before time",
-    HEAD + "5,A,0,1,\n6,A,1,1,\n": "line 3: time differs from the line before of order A",
-    HEAD + "5,A,0,1,9\n5,A,1,1,\n": "line 3: due differs from the line before of order A",
+    HEAD + "5,A,0,1,4\n": "line 2: due is earlier than time",
+    HEAD + "5,A,0,1,\n6,A,1,1,\n": "line 3: time differs from that of the previous line of order A",
+    HEAD + "5,A,0,1,9\n5,A,1,1,\n": "line 3: due differs from that of the previous line of order A",
     HEAD + "5,A,0,1,\n5,A,0,1,\n": "line 3: sku 0 occurs twice in order A",
     HEAD + "5,,0,1,\n": "line 2: order is empty",
     HEAD + f"5,{'A' * 201},0,1,\n": "line 2: order is longer than 200 characters",
     HEAD + "5,A,0,1,\n5,B,0,1,\n5,A,1,1,\n": "line 4: order is one that ended before",
     HEAD + '5,"A,0,1,\n': "line 2: unexpected end of data",
-    HEAD + "5,A\0,0,1,\n": "line 2: not text: holds a zero byte",
+    HEAD + "5,A\0,0,1,\n": "line 2: is not text: contains a zero byte",
     HEAD + "5,A,0,1,\n" + "x" * 5000: "line 3: longer than 4096 bytes",
 }
 

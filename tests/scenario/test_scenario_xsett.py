@@ -91,7 +91,7 @@ def test_every_general_value_and_the_backlogs(tmp_path: Path):
     assert (replenishment.bundles, replenishment.pause_by_stock) == (8, False)
     assert (replenishment.resume_below_share, replenishment.pause_above_share) == (0.8, 0.9)
     assert (replenishment.load_limit_share, replenishment.return_share) == (1.3, 0.2)
-    assert noted(notes, "compares space with space")
+    assert noted(notes, "limits the load in space units")
 
 
 def test_down_periods_and_batches(tmp_path: Path):
@@ -144,8 +144,8 @@ def test_poisson_modes(tmp_path: Path):
     )
     assert scenario.demand.profile.kind == scenario.replenishment.profile.kind == "steps"
     assert scenario.demand.profile.weights != scenario.replenishment.profile.weights
-    assert noted(notes, "hold exactly at the borders of steps")
-    assert noted(notes, "what stock cannot serve waits")
+    assert noted(notes, "change exactly at the start of a step")
+    assert noted(notes, "orders that stock cannot serve wait")
     scenario, _ = poisson(
         tmp_path,
         "<PoissonMode>Simple</PoissonMode><AverageOrdersPerHourAndStation>12"
@@ -212,7 +212,7 @@ def test_fixed_orders(tmp_path: Path):
     assert [tuple(bundle) for bundle in bundles] == [(1_500_000, 1, 3, 6.0, 0)]
     assert noted(notes, "fixed orders have no due times")
     assert noted(notes, "BufferBundlesUntilInventoryLoad") is False
-    with pytest.raises(InputError, match="OrderFile: is empty, but OrderMode is Fixed"):
+    with pytest.raises(InputError, match="OrderFile: is empty, but required if OrderMode is Fixed"):
         read(tmp_path, inventory.format(""))
 
 
@@ -247,9 +247,9 @@ def test_what_is_dead_or_unknown_is_named(tmp_path: Path):
         "<PoissonInventoryConfiguration><Mode/></PoissonInventoryConfiguration>",
         "<HeatMode>NumItemsHandled</HeatMode><Seed>3</Seed><Moon>full</Moon>",
     )
-    assert "Seed not used: the seed is given with the run" in notes
-    assert noted(notes, "HeatMode not used: RAWSim-O itself has dropped it")
-    assert noted(notes, "OrderTimestampDueDateOffsetMean not used: RAWSim-O itself")
+    assert "Seed not used: the seed is an option of rmfs run" in notes
+    assert noted(notes, "HeatMode not used: RAWSim-O no longer supports it")
+    assert noted(notes, "OrderTimestampDueDateOffsetMean not used: RAWSim-O no longer supports it")
     assert noted(notes, "PoissonInventoryConfiguration not used: belongs to another OrderMode")
     assert noted(notes, "Moon unknown")
     assert noted(notes, "Colour unknown")
@@ -265,9 +265,9 @@ WRONG = {
     "<DueTimePriorityMode>yes</DueTimePriorityMode>": "must be true or false (given: 'yes')",
     "<SubmitBatches/><SubmitBatches/>": "SubmitBatches: occurs twice",
     "<SimpleItemConfiguration><GeneratorConfigFile>gone.xgenc</GeneratorConfigFile>"
-    "</SimpleItemConfiguration>": "names the file gone.xgenc, which is not beside it",
+    "</SimpleItemConfiguration>": "names the file gone.xgenc, which is neither in the same folder",
     "<SimpleItemConfiguration><GeneratorConfigFile>/etc/passwd</GeneratorConfigFile>"
-    "</SimpleItemConfiguration>": "names the file '/etc/passwd', expected a .xgenc file",
+    "</SimpleItemConfiguration>": "names the file '/etc/passwd', which must end in .xgenc",
 }
 
 

@@ -115,8 +115,8 @@ def test_the_fit_is_told(twins):
         for name in ("orders per h", "lines per order, mean", "units per line, sd"):
             assert found[name].twin == pytest.approx(found[name].data, rel=0.06)
         assert found["share of the orders for the most popular tenth"].p > 0.001
-        assert found["variance / mean of the orders of an hour"].p > 0.001
-        lifts = found["pairs that come again, over chance"]
+        assert found["variance / mean of the orders per hour"].p > 0.001
+        lifts = found["repeated pairs of SKUs, relative to chance"]
         assert lifts.data > 5
         assert lifts.twin == pytest.approx(lifts.data, rel=0.5)
 

@@ -33,7 +33,7 @@ def run(pacing: str, **parameters: object) -> HandMade:
         ({"work": -1.0}, "work must be a finite number"),
         ({"built": inf}, "built must be a finite number"),
         ({"objective": 1.0, "bound": 2.0}, "bound 2.0 exceeds the objective 1.0"),
-        ({"solution": [1, 2]}, "solution must be values by name, or None; it is a list"),
+        ({"solution": [1, 2]}, "solution must map names to values, or be None; it is a list"),
     ],
 )
 def test_an_answer_checks_itself(numbers: dict[str, object], complaint: str) -> None:

@@ -178,7 +178,7 @@ def test_impossible_charges_say_why():
     for wrong, why in [
         (Charge(robot, 0, 0.5), "is not an energy station"),
         (Charge(robot, charger, 1.5), "not a level"),
-        (Unplug(robot), "is not at a plug-in place"),
+        (Unplug(robot), "is not at a charger"),
     ]:
         with pytest.raises(ImpossibleError, match=why):
             decision.answer(wrong)
@@ -203,10 +203,11 @@ def test_charging_times_are_the_inverse_of_charging():
 @pytest.mark.parametrize(
     ("given", "says"),
     [
-        ({"layout.other_stations.charger.north": 0}, "nothing charges"),
+        ({"layout.other_stations.charger.north": 0}, "batteries cannot be charged"),
         (
             {"layout.other_stations.charger.parameters.power_w": 50.0},
-            "12 robots draw 360 W standing still, and all chargers together give 150 W: 210 W are",
+            "12 robots draw 360 W even at standstill, but all chargers together supply only "
+            "150 W: 210 W are",
         ),
         ({"controllers.ca": {"below_share": 0.8, "until_share": 0.5}}, "below_share = 0.8 must be"),
         ({"scenario.energy.battery.capacity_wh": -5}, "capacity_wh: .*greater than 0"),

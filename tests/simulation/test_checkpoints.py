@@ -73,21 +73,21 @@ def test_other_inputs_are_refused(tmp_path: Path) -> None:
     run = small()
     run.run_until(100.0)
     run.save(str(tmp_path / "file"))
-    with pytest.raises(InputError, match="its run had another seed: begin anew"):
+    with pytest.raises(InputError, match="belongs to a run with another seed;"):
         resumed(tmp_path / "file", small(seed=3))
-    with pytest.raises(InputError, match="its run had another controllers: begin anew"):
+    with pytest.raises(InputError, match="belongs to a run with another controllers;"):
         resumed(tmp_path / "file", small(controllers="hadgs"))
     assert resumed(tmp_path / "file", small()).now_s == 100.0
 
 
 def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path, monkeypatch) -> None:
     file = tmp_path / "file"
-    with pytest.raises(InputError, match="no checkpoint to go on from"):
+    with pytest.raises(InputError, match="there is no checkpoint to resume from"):
         resumed(file, small())
     for content, reason in [
-        (b"", "no checkpoint"),
-        (b"{}\n", "no checkpoint"),
-        (pickle.dumps({"a": 1}), "no checkpoint"),
+        (b"", "is not a checkpoint"),
+        (b"{}\n", "is not a checkpoint"),
+        (pickle.dumps({"a": 1}), "is not a checkpoint"),
         (b'{"format": "rmfs-checkpoint/1", "code": "0"}\n', "damaged"),
     ]:
         file.write_bytes(content)
@@ -102,7 +102,7 @@ def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path, monkeypatch) 
         rmfs.Simulation.load(file)
     file.write_bytes(whole)
     monkeypatch.setattr(saving, "code_hash", lambda: "other")
-    with pytest.raises(InputError, match="written by another version"):
+    with pytest.raises(InputError, match="was written by another version"):
         rmfs.Simulation.load(file)
 
 

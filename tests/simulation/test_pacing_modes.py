@@ -103,7 +103,7 @@ def test_an_exchanged_controller_is_not_told() -> None:
 @pytest.mark.parametrize(
     ("mode", "overrides", "message"),
     [
-        ("slow", (), "pacing slow: no such mode; valid: instant, wall, work, fixed, replay"),
+        ("slow", (), "pacing slow: unknown mode; valid: instant, wall, work, fixed, replay"),
         ("instnt", (), "did you mean instant?"),
         ("wall=3", (), "wall takes no value after ="),
         ("fixed=-1", (), "pacing fixed: seconds"),

@@ -138,7 +138,7 @@ class TestSimulate:
         [
             ({"overrides": [(["rules", "psa"], 1)]}, "must begin with layout., scenario., con"),
             ({"overrides": [(["scenario"], 1)]}, "must begin with"),
-            ({"pacing": "slow"}, "pacing slow: no such mode; valid: instant"),
+            ({"pacing": "slow"}, "pacing slow: unknown mode; valid: instant"),
             ({"seed": -1}, "seed -1"),
             ({"controllers": "defalt"}, "did you mean default?"),
         ],

@@ -220,7 +220,10 @@ def test_a_design_runs_it_on_dask(design, tmp_path):
         (("every = 3", "every = 0"), "other_stations.check.parameters: every"),
         (("every = 3", "evry = 3"), "unknown key evry; did you mean every"),
         (("north = 1", "north = 9"), "north side has room for"),
-        (('kind = "quality_check.py:QualityCheck"', 'kind = "check"'), "no kind of station check"),
+        (
+            ('kind = "quality_check.py:QualityCheck"', 'kind = "check"'),
+            "no kind of station is named check",
+        ),
     ],
 )
 def test_what_is_wrong_is_named(checked, change, message):

@@ -286,17 +286,17 @@ class AsksAndForgets(DispatchControl):
 @pytest.mark.parametrize(
     ("outside", "rules", "reason"),
     [
-        ("pp", {}, "is not a problem that can be decided outside"),
-        ("pick", {}, "not a problem that can be decided outside; valid: poa, roa"),
+        ("pp", {}, "this problem cannot be decided outside"),
+        ("pick", {}, "cannot be decided outside; valid: poa, roa"),
         (
             "pps",
             {"controllers__ta": "random", "controllers__pps": "dummy"},
-            "ta random decides pps as well",
+            "ta random also decides pps",
         ),
         (
             "psa",
             {"controllers__ta": {"name": f"{__name__}:AsksAndForgets"}},
-            "asks these questions while .* can go on after one",
+            "needs these decisions while .* can continue after",
         ),
     ],
 )

@@ -13,7 +13,7 @@ from rmfs.traffic import TIME_WINDOWS, EventKind, PlannerSettings, Step, Traffic
 class RandomTasks:
     """Keeps every robot busy with random tasks and counts what each has done.
 
-    A storage place is offered again once the robot that lifts its pod has planned to leave.
+    A storage location is offered again once the robot that lifts its pod has planned to leave.
     """
 
     layout: object

@@ -168,7 +168,7 @@ def test_tiers_without_elevators_are_reported():
 
 
 def test_a_loaded_robot_steps_aside_to_places_without_a_pod():
-    """A robot whose only way is closed waits with its pod at a free storage place."""
+    """A robot whose only way is closed waits with its pod at a free storage location."""
     layout = load("small", [(["robots"], 6)])
     tasks = RandomTasks(layout, seed=3)
     tasks.traffic.delay(3, 91_666)

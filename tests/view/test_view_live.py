@@ -238,7 +238,7 @@ def test_a_run_that_waits_for_its_page_begins_when_that_asks() -> None:
 
 def test_a_run_that_never_began_is_told() -> None:
     live = LiveRun(NAMES, title="test")
-    live.close("the run was given up")
+    live.close("the run was aborted")
     with pytest.raises(InputError, match="given up"):
         live.scene()
 
@@ -372,7 +372,7 @@ def module_to_import(tmp_path: Any, monkeypatch: Any) -> None:
 @pytest.mark.parametrize(("problem", "rule"), WISHES)
 def test_pages_import_no_code_by_an_exchange(problem: str, rule: Any) -> None:
     watched = Watched()
-    with pytest.raises(InputError, match="must be the name of something installed"):
+    with pytest.raises(InputError, match="must be the name of an installed class"):
         watched.live.exchange(problem, rule)
     assert not [name for name in sys.modules if "imported_by_page" in name]
 
@@ -387,7 +387,7 @@ def test_pages_import_no_code_by_an_exchange(problem: str, rule: Any) -> None:
     ],
 )
 def test_pages_import_no_code_by_starting_a_run(change: Any, tmp_path: Any) -> None:
-    with pytest.raises(InputError, match="must be the name of something installed"):
+    with pytest.raises(InputError, match="must be the name of an installed class"):
         Starter(tmp_path / "results").start({"set": change})
     assert not [name for name in sys.modules if "imported_by_page" in name]
 
@@ -395,6 +395,6 @@ def test_pages_import_no_code_by_starting_a_run(change: Any, tmp_path: Any) -> N
 @pytest.mark.usefixtures("module_to_import")
 def test_pages_import_no_code_by_a_preview() -> None:
     kind = {"kind": "imported_by_page:X", "north": 1}
-    with pytest.raises(InputError, match="must be the name of something installed"):
+    with pytest.raises(InputError, match="must be the name of an installed class"):
         preview({"set": {"layout.other_stations.x": kind}})
     assert not [name for name in sys.modules if "imported_by_page" in name]

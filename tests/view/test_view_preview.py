@@ -23,7 +23,7 @@ def test_it_is_the_layout_that_a_run_would_have() -> None:
     [
         ({"layout": "default", "set": {"layout.robots": 0}}, "robots"),
         ({"layout": "../secret"}, "must be one of"),
-        ({"layout": "default", "set": [1]}, "values by key"),
+        ({"layout": "default", "set": [1]}, "must map keys to values"),
     ],
 )
 def test_what_cannot_be_built_is_said(wish: dict, told: str) -> None:

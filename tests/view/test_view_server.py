@@ -108,7 +108,7 @@ def test_a_damaged_run_is_answered_with_the_reason(runs: list[RunFolder], tmp_pa
         threading.Thread(target=server.serve_forever, daemon=True).start()
         answer = ask(server, "/runs/0")
         assert answer.status == 422
-        assert "cut off or not a trace" in json.loads(answer.read())["error"]
+        assert "truncated or not a trace" in json.loads(answer.read())["error"]
         server.shutdown()
 
 

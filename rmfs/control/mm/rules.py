@@ -27,7 +27,9 @@ class Rules(RuleTables):
     @pydantic.model_validator(mode="after")
     def _at_least_one(self) -> Rules:
         if not self.choices():
-            raise ValueError(f"names no rule; valid: {', '.join(Problem)}")
+            raise ValueError(
+                f"must name a rule for at least one problem; valid: {', '.join(Problem)}"
+            )
         return self
 
     def choices(self) -> list[Choice]:

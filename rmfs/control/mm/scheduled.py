@@ -35,7 +35,7 @@ class PlannedExchange(Rules):
     @pydantic.model_validator(mode="after")
     def _one_time(self) -> PlannedExchange:
         if (self.at_s is None) == (self.at_share is None):
-            raise ValueError("needs exactly one of at_s and at_share")
+            raise ValueError("must have exactly one of at_s and at_share")
         return self
 
     def time_s(self, end_s: float) -> float:
@@ -96,10 +96,12 @@ class Scheduled(MethodManagement[ScheduledParameters]):
         assert isinstance(given, ScheduledParameters)
         shares = [entry.at_share for entry in given.exchanges]
         if None in shares and any(share is not None for share in shares):
-            raise InputError(f"{source}: mm.exchanges: all need at_s, or all at_share")
+            raise InputError(
+                f"{source}: mm.exchanges: either all entries must have at_s, or all at_share"
+            )
         times = [entry.time_s(1.0) for entry in given.exchanges]
         if times != sorted(times):
-            raise InputError(f"{source}: mm.exchanges: must be in order of time")
+            raise InputError(f"{source}: mm.exchanges: must be in chronological order")
         present = dict(choices)
         for number, entry in enumerate(given.exchanges):
             present |= {choice.problem: choice for choice in entry.choices()}

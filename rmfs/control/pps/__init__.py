@@ -49,7 +49,8 @@ class LateBinding(Parameters):
     def _reserve_what_is_considered(self) -> LateBinding:
         if _REACH[self.reserve] < _REACH[self.consider]:
             raise ValueError(
-                f"reserve must reach as far as consider (given: {self.reserve}, {self.consider})"
+                "reserve must include the requests of consider (given: reserve = "
+                f"{self.reserve}, consider = {self.consider})"
             )
         return self
 

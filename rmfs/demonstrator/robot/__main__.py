@@ -50,7 +50,7 @@ def main(arguments: list[str] | None = None, camera: Callable[[], Camera] | None
         code = guarded(lambda alive: drive(options, see(), alive), lambda: stop(options.base))
         if code in (0, 130) or options.once:
             return max(code, 0)
-        _log.error("the program has ended with %d and begins again", code)
+        _log.error("the program has ended with exit code %d and is restarted", code)
         time.sleep(1.0)
 
 
@@ -91,10 +91,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--robot", required=True, metavar="NAME", help="for example robot-0")
     parser.add_argument("--secret", required=True, type=Path, metavar="FILE")
     parser.add_argument("--base", required=True, metavar="DEVICE", help="serial port of the base")
-    parser.add_argument("--tags", required=True, metavar="DEVICE", help="of the tag reader")
+    parser.add_argument("--tags", required=True, metavar="DEVICE", help="port of the tag reader")
     parser.add_argument("--camera", type=int, default=0, metavar="NUMBER")
     parser.add_argument("--memory", type=Path, default=Path("robot.json"), metavar="FILE")
-    parser.add_argument("--once", action="store_true", help="end when the program dies")
+    parser.add_argument("--once", action="store_true", help="do not restart the program")
     return parser
 
 

@@ -50,7 +50,7 @@ class Channel:
     def send(self, message: Message) -> None:
         """Queue a message; raise ProtocolError if `MOST_WAITING` messages are unacknowledged."""
         if len(self._waiting) >= MOST_WAITING:
-            raise ProtocolError(f"{MOST_WAITING} messages without acknowledgement")
+            raise ProtocolError(f"{MOST_WAITING} messages are not acknowledged")
         self._number += 1
         self._waiting.append({"n": self._number, **message})
 

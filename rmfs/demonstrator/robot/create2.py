@@ -99,7 +99,7 @@ class Create2:
         self.port.write(question)
         answer = self.port.read(4)
         if len(answer) < 4:
-            raise BaseError(f"{len(answer)} of 4 bytes from the base")
+            raise BaseError(f"the base sent only {len(answer)} of 4 bytes")
         return int.from_bytes(answer[:2], "big"), int.from_bytes(answer[2:4], "big")
 
 

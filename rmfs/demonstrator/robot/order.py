@@ -68,7 +68,10 @@ class Order:
             if set(actions) - {STRAIGHT} or not len(actions) == len(message["tags"]) == len(
                 message["metres"]
             ):
-                raise ValueError("actions, tags and metres do not go together")
+                raise ValueError(
+                    "after an optional turn, actions must be straight, one for each of tags "
+                    "and metres"
+                )
             return cls(
                 number=int(message["id"]),
                 turn_rad=turn,

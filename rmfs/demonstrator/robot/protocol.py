@@ -45,7 +45,7 @@ def pack(message: Message, key: bytes, label: bytes) -> bytes:
     """Return a message as a frame; raise ValueError if its text is longer than `LARGEST`."""
     text = json.dumps(message, separators=(",", ":"), allow_nan=False).encode()
     if len(text) > LARGEST:
-        raise ValueError(f"a message of {len(text)} bytes; at most {LARGEST}")
+        raise ValueError(f"a message has {len(text)} bytes; at most {LARGEST} are allowed")
     return len(text).to_bytes(_LENGTH, "big") + code(key, label, text) + text
 
 
@@ -67,13 +67,13 @@ class Unpacker:
         while len(self.rest) >= _LENGTH:
             size = int.from_bytes(self.rest[:_LENGTH], "big")
             if size > LARGEST:
-                raise ProtocolError(f"a frame of {size} bytes; at most {LARGEST}")
+                raise ProtocolError(f"a frame has {size} bytes; at most {LARGEST} are allowed")
             if len(self.rest) < _HEAD + size:
                 return
             proof, text = bytes(self.rest[_LENGTH:_HEAD]), bytes(self.rest[_HEAD : _HEAD + size])
             del self.rest[: _HEAD + size]
             if not hmac.compare_digest(proof, code(key, label, text)):
-                raise ProtocolError("a frame that nobody with the secret wrote for this place")
+                raise ProtocolError("a frame has a wrong authentication code")
             try:
                 message = json.loads(text)
             except (ValueError, RecursionError) as error:
@@ -90,7 +90,9 @@ def text_of(message: Message, name: str, longest: int = 64) -> str:
     """
     value = message.get(name)
     if not isinstance(value, str) or not 0 < len(value) <= longest:
-        raise ProtocolError(f"{name} = {value!r}; it is a text of 1 to {longest} characters")
+        raise ProtocolError(
+            f"{name} must be a text of 1 to {longest} characters (given: {value!r})"
+        )
     return value
 
 
@@ -98,5 +100,5 @@ def whole(message: Message, name: str) -> int:
     """Return an integer field of a message; raise ProtocolError if it is not an integer >= 0."""
     value = message.get(name)
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise ProtocolError(f"{name} = {value!r}; it is a whole number, not negative")
+        raise ProtocolError(f"{name} must be a whole number, 0 or more (given: {value!r})")
     return value

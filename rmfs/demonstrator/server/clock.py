@@ -80,7 +80,7 @@ class RoomClock:
                     self._hear(hub, message, time_us)
                     begun = time.monotonic()
             if time.monotonic() - begun > PATIENCE_S:
-                raise RoomGoneError(f"the emulated room has said nothing for {PATIENCE_S:.0f} s")
+                raise RoomGoneError(f"the emulated room has sent no message for {PATIENCE_S:.0f} s")
         return messages
 
     def passed(self, hub: Hub, time_us: int) -> None:

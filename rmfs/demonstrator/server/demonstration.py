@@ -79,8 +79,8 @@ class Demonstration:
     def _make(self, settings: dict[str, Any], layout: Layout, **options: Any) -> GuidedTraffic:
         if options["planner"].name != TIME_WINDOWS.name:
             raise InputError(
-                f"controllers: path planning by {options['planner'].name}: robots outside the "
-                f"simulation need {TIME_WINDOWS.name}, whose plans can be shifted"
+                f"controllers: path planning: real robots require {TIME_WINDOWS.name}, whose plans "
+                f"can be delayed (given: {options['planner'].name})"
             )
         check_floor(layout, self.tags)
         journal = Journal(self.journal, settings, past_failure=self.past_failure)

@@ -99,7 +99,7 @@ class Guide:
                 self._hear(self.robots[index], message)
             except (KeyError, TypeError, ValueError) as error:
                 self.counts["nonsense"] += 1
-                _log.warning("robot %d: %s makes no sense: %r", index, message.get("type"), error)
+                _log.warning("robot %d: invalid message %s: %r", index, message.get("type"), error)
         self._look_after_silent(silent)
         if self._regroup_due and regroups:
             self._regroup()
@@ -153,9 +153,7 @@ class Guide:
         waypoint = self._waypoint_of.get(tag)
         if waypoint is None:
             self.counts["unknown_tags"] += 1
-            _log.warning(
-                "robot %d reports tag %s, which is nowhere in the layout", robot.index, tag
-            )
+            _log.warning("robot %d reports tag %s, which is not in the layout", robot.index, tag)
             if lost:
                 self._tell_again(robot)
             return
@@ -310,7 +308,7 @@ class Guide:
         try:
             self.traffic.regroup(rests)
         except ValueError as error:
-            _log.debug("plans cannot be remade yet: %s", error)
+            _log.debug("new plans cannot be made yet: %s", error)
             return
         self._regroup_due = False
         self.counts["regroupings"] += 1

@@ -118,8 +118,8 @@ class GuidedTraffic(Traffic):
             self._failed = True
             self._journal.note_failure(now_us, repr(error))
             raise InternalError(
-                f"{error!r}, at {now_us / 1e6:.2f} s of the demonstration (the same command with "
-                "--past-failure resumes without the messages of that time)"
+                f"{error!r}, at {now_us / 1e6:.2f} s of the demonstration; to resume without the "
+                "messages received then, repeat the command with --past-failure"
             ) from error
 
     def end(self) -> None:

@@ -50,7 +50,9 @@ class _Connection:
                 del self._unsent[: self.socket.send(self._unsent)]
         except (BlockingIOError, InterruptedError):
             if len(self._unsent) > 1_000_000:
-                raise ProtocolError("it does not read what it is sent") from None
+                raise ProtocolError(
+                    "the other side does not read the messages sent to it"
+                ) from None
         except OSError as error:
             raise ProtocolError(str(error)) from None
 
@@ -202,15 +204,15 @@ class Hub:
         for message in connection.channel.receive(data, now_us):
             self._inbox.append((connection.name, message))
         if connection.channel.refused > before:
-            _log.debug("%s: a message that is not the next one", connection.name)
+            _log.debug("%s: a message is out of sequence", connection.name)
 
     def _begin(self, connection: _Connection, guest: Guest, now_us: int) -> None:
         name = guest.name
         if name not in self._names:
-            raise ProtocolError(f"nobody called {name!r} is expected")
+            raise ProtocolError(f"no robot named {name!r} is expected")
         older = self._sessions.get(name)
         if older is not None:
-            self._drop(older, "the same robot has come again")
+            self._drop(older, "the robot has connected again")
         connection.name, connection.greeting = name, None
         connection.channel = Channel(guest.key, SERVER, ROBOT, now_us, guest.rest)
         self._sessions[name] = connection
@@ -235,4 +237,4 @@ class Hub:
         limit = time.monotonic() - UNKNOWN_S
         for connection in list(self._connections.values()):
             if connection.greeting is not None and connection.opened < limit:
-                self._drop(connection, "it has not introduced itself in time")
+                self._drop(connection, "it has sent no valid hello in time")

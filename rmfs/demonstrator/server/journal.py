@@ -114,8 +114,8 @@ class _Past:
         lines = path.read_text(encoding="utf-8").split("\n")
         if lines[0] != head:
             raise InputError(
-                f"{path}: the journal of another demonstration (or none); go on with the same "
-                "layout, scenario, controllers and seed, or choose another --out"
+                f"{path}: is not a journal of this demonstration; use the same layout, scenario, "
+                "controllers and seed as before, or choose another --out"
             )
         for number, line in enumerate(lines[1:-1], start=2):
             try:
@@ -139,11 +139,11 @@ def _to_leave_out(path: Path, past: _Past) -> int:
     """Return the time (us) of the tick that failed."""
     if past.failed is None:
         raise InputError(
-            f"{path}: has no failure; --past-failure resumes a journal whose last tick failed"
+            f"{path}: contains no failure; --past-failure needs a journal whose last tick failed"
         )
     if past.failed in past.left_out:
         raise InputError(
-            f"{path}: the tick at {past.failed / 1e6:.2f} s fails also without what was heard "
-            "then; begin anew with another --out"
+            f"{path}: the tick at {past.failed / 1e6:.2f} s fails even without the messages "
+            "received then; start again with another --out"
         )
     return past.failed

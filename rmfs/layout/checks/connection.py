@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.layout.checks.reach import Mask
     from rmfs.layout.model import Layout
 
-TO_IT, FROM_IT = "no way leads to it", "no way leads away from it"
+TO_IT, FROM_IT = "no path leads to it", "no path leads away from it"
 
 
 def connection(layout: Layout) -> Iterator[Violation]:
@@ -50,7 +50,7 @@ def _empty(layout: Layout, lost: Mask) -> Iterator[Violation]:
             yield from grouped(IMPOSSIBLE, labels, message)
     stuck = np.flatnonzero(~leaves[layout.robot_waypoint])
     robots = [f"robot {r} ({at(layout, layout.robot_waypoint[r])})" for r in stuck]
-    yield from grouped(IMPOSSIBLE, robots, "cannot reach the stations and storage places")
+    yield from grouped(IMPOSSIBLE, robots, "cannot reach the stations and storage locations")
 
 
 def _outside(layout: Layout, fine: Mask) -> Iterator[list[str]]:
@@ -104,7 +104,7 @@ def _pod_ways(
     if 2 * bad.sum() > places.sum():
         message = (
             f"a loaded robot can {verb} it {preposition} only {places.sum() - bad.sum()} of "
-            f"{places.sum()} storage places"
+            f"{places.sum()} storage locations"
         )
         yield Violation(IMPOSSIBLE, station, message)
         return

@@ -35,11 +35,11 @@ def occupancy(layout: Layout) -> Iterator[Violation]:
 def _pods(layout: Layout) -> Iterator[Violation]:
     places = int(layout.is_storage.sum())
     if layout.pods > places:
-        message = f"{layout.pods} pods, but only {places} storage places"
+        message = f"{layout.pods} pods, but only {places} storage locations"
         yield Violation(IMPOSSIBLE, "pods", message)
     outside = np.flatnonzero(~layout.is_storage[layout.pod_waypoint])
     labels = (f"pod {p} ({at(layout, layout.pod_waypoint[p])})" for p in outside)
-    yield from grouped(IMPOSSIBLE, labels, "does not stand at a storage place")
+    yield from grouped(IMPOSSIBLE, labels, "does not stand at a storage location")
     yield from _crowded(layout, layout.pod_waypoint, "pods")
 
 
@@ -47,7 +47,7 @@ def _robots(layout: Layout) -> Iterator[Violation]:
     places = int(layout.is_storage.sum())
     if layout.robots > places:
         message = (
-            f"{layout.robots} robots, but only {places} storage places to rest at (W2: a robot "
+            f"{layout.robots} robots, but only {places} storage locations to rest at (W2: a robot "
             "without a task must not stand in the way)"
         )
         yield Violation(NOT_WELL_FORMED, "robots", message)
@@ -69,7 +69,7 @@ def _stations(layout: Layout) -> Iterator[Violation]:
     for number, station in enumerate(layout.stations):
         label = station_label(layout, number)
         if layout.is_storage[station.waypoint]:
-            yield Violation(NOT_WELL_FORMED, label, "stands at a storage place (W1)")
+            yield Violation(NOT_WELL_FORMED, label, "stands at a storage location (W1)")
         if station.waypoint in first:
             other = station_label(layout, first[station.waypoint])
             yield Violation(IMPOSSIBLE, label, f"stands at the waypoint of {other}")

@@ -196,7 +196,8 @@ def _edge(ends: NDArray[np.int64]) -> str:
 def _report(labels: list[str], distances_m: Points, needed_m: float) -> Iterator[Violation]:
     if labels:
         message = (
-            f"{float(distances_m.min()):.3g} m apart at the nearest, less than the two radii that "
-            f"pass there ({needed_m:g} m)"
+            f"{float(distances_m.min()):.3g} m apart at the nearest, less than the sum of the "
+            "two radii "
+            f"that pass there ({needed_m:g} m)"
         )
         yield from grouped(IMPOSSIBLE, labels, message)

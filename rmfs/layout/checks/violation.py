@@ -53,7 +53,7 @@ def at(layout: Layout, waypoint: int) -> str:
 def waypoint_label(layout: Layout, waypoint: int) -> str:
     """Name a waypoint, as a storage location, a place of a queue, or a plain waypoint."""
     if layout.is_storage[waypoint]:
-        kind = "storage place"
+        kind = "storage location"
     elif layout.is_queue[waypoint]:
         kind = "queue place"
     else:

@@ -46,10 +46,14 @@ def ways(layout: Layout) -> Iterator[Violation]:
     useful = core | (from_core & before_endpoint) | (to_core & after_endpoint)
     yield from _report(layout, aisles & ~useful, "is not strongly connected with the aisles (W1)")
     yield from _report(
-        layout, layout.is_storage & ~entered, "no aisle leads to it without a foreign endpoint (W1)"
+        layout,
+        layout.is_storage & ~entered,
+        "cannot be reached from the aisles without passing another endpoint (W1)",
     )
     yield from _report(
-        layout, layout.is_storage & ~left, "leads to no aisle without a foreign endpoint (W1)"
+        layout,
+        layout.is_storage & ~left,
+        "the aisles cannot be reached from it without passing another endpoint (W1)",
     )
     shut = [queue for queue in queues if not entered[queue.entrance]]
     for queue in shut:
@@ -57,7 +61,9 @@ def ways(layout: Layout) -> Iterator[Violation]:
         yield from grouped(NOT_WELL_FORMED, [queue.label], message)
     dead = [queue.label for queue in queues if not left[queue.head]]
     yield from grouped(
-        NOT_WELL_FORMED, dead, "leads to no aisle without passing its own queue (W1)"
+        NOT_WELL_FORMED,
+        dead,
+        "the aisles cannot be reached from it without passing its own queue (W1)",
     )
 
 

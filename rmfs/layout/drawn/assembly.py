@@ -83,14 +83,14 @@ def _refuse_incomplete(drawing: Drawing) -> None:
         word
         for word, there in (
             ("aisle", (grounds == Ground.AISLE).any()),
-            ("storage place", (grounds == Ground.STORAGE).any()),
+            ("storage location", (grounds == Ground.STORAGE).any()),
             ("pick station", "pick" in kinds),
             ("replenishment station", "replenishment" in kinds),
         )
         if not there
     ]
     if lacking:
-        raise InputError(f"there is no {', no '.join(lacking)}")
+        raise InputError(f"the layout has no {', no '.join(lacking)}")
 
 
 def _pods(drawing: Drawing, given: Equipment, number: NDArray[np.int32]) -> NDArray[np.int32]:

@@ -89,7 +89,7 @@ def _split(path: Path) -> tuple[dict[str, Any], int, list[str]]:
     try:
         text = read_bounded(path, LARGEST_MIB).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"{path}: not text in UTF-8") from None
+        raise InputError(f"{path}: is not UTF-8 text") from None
     lines = [line.rstrip() for line in text.splitlines()]
     end = lines.index(END_OF_HEAD) + 1 if END_OF_HEAD in lines else 0
     try:
@@ -104,7 +104,7 @@ def _split(path: Path) -> tuple[dict[str, Any], int, list[str]]:
         del picture[-1]
     width = max(map(len, picture), default=0)
     if not picture or width * len(picture) > MOST_CELLS:
-        raise InputError(f"{path}: holds no picture of 1 to {MOST_CELLS} cells")
+        raise InputError(f"{path}: must hold a picture of 1 to {MOST_CELLS} cells")
     return head, end + 1, [line.ljust(width) for line in picture]
 
 

@@ -87,7 +87,7 @@ def _wrong(drawing: Drawing, stations: dict[str, list[list[list[int]]]]) -> Iter
                 if cell in seen:
                     yield f"{told} is given twice"
                 if rank and cell not in neighbours(cells[rank - 1]):
-                    yield f"{told} is not adjacent to the previous place"
+                    yield f"{told} is not adjacent to the previous cell"
                 seen.add(cell)
 
 

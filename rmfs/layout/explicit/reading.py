@@ -99,7 +99,7 @@ def _dangling(explicit: ExplicitLayout) -> Iterator[str]:
             if head > last:
                 yield f"waypoints.{v}.to: there is no waypoint {head} (last: {last})"
             elif head == v:
-                yield f"waypoints.{v}.to: leads to itself"
+                yield f"waypoints.{v}.to: must not contain the waypoint itself"
             elif waypoints[head].tier != waypoint.tier:
                 yield f"waypoints.{v}.to: waypoint {head} is on another tier; use an elevator"
     for key, index in _references(explicit):
@@ -114,7 +114,10 @@ def _dangling(explicit: ExplicitLayout) -> Iterator[str]:
         for i, ride in enumerate(elevator.rides):
             for key, end in (("origin", ride.origin), ("destination", ride.destination)):
                 if end not in boarding:
-                    yield f"elevators.{e}.rides.{i}.{key}: {end} is not the head of its queues"
+                    yield (
+                        f"elevators.{e}.rides.{i}.{key}: {end} is not the first waypoint of one "
+                        "of its queues"
+                    )
 
 
 def _references(explicit: ExplicitLayout) -> Iterator[tuple[str, int]]:

@@ -41,7 +41,7 @@ def _even_aisles(p: LayoutParameters) -> list[str]:
         why = "one-way aisles need"
     elif p.hall_pattern == "highway" and p.single_lane:
         # the one-way rows and columns of the halls alternate all around the tier
-        why = '"highway" halls round single-lane aisles need'
+        why = '"highway" halls around single-lane aisles need'
     else:
         return []
     return [
@@ -84,14 +84,16 @@ def _size(p: LayoutParameters) -> list[str]:
     size = extent(p)
     tiles = size.rows * size.columns * p.tiers
     if tiles > MOST_TILES:
-        return [f"tiers, aisles, block_length: {tiles} tiles; at most {MOST_TILES} are allowed"]
+        return [
+            f"tiers, aisles, block_length: give {tiles} tiles; at most {MOST_TILES} are allowed"
+        ]
     return []
 
 
 def _room_at_sides(p: LayoutParameters) -> list[str]:
     return [
         f"{' + '.join(STATIONS)}: the {side.name.lower()} side has room for "
-        f"{aisles_at(p, side) // 2}, half its aisles (given: {sites_at(p, side)})"
+        f"{aisles_at(p, side) // 2}, half the number of its aisles (given: {sites_at(p, side)})"
         for side in SIDES
         if sites_at(p, side) > aisles_at(p, side) // 2
     ]
@@ -118,7 +120,7 @@ def _robots(p: LayoutParameters) -> list[str]:
         problems.append(f"robots: a tier has only {road_tiles(p)} road tiles (given: {p.robots})")
     if p.robots > storage_places(p):
         problems.append(
-            f"robots: a tier has only {storage_places(p)} storage places to rest at "
+            f"robots: a tier has only {storage_places(p)} storage locations to rest at "
             f"(given: {p.robots})"
         )
     return problems
@@ -128,8 +130,8 @@ def _within(p: LayoutParameters) -> list[str]:
     wanted = sum(group.within for group in p.other_stations.values())
     if wanted > blocks(p):
         return [
-            f"other_stations: the storage area has room for {blocks(p)} stations within, one per "
-            f"block (given: {wanted})"
+            f"other_stations: the storage area has room for {blocks(p)} stations (`within`), one "
+            f"per block (given: {wanted})"
         ]
     return []
 
@@ -137,7 +139,7 @@ def _within(p: LayoutParameters) -> list[str]:
 def _pods(p: LayoutParameters) -> list[str]:
     if math.floor(p.pod_share * storage_places(p)) == 0:
         return [
-            f"pod_share: leaves no pod for {storage_places(p)} storage places per tier "
+            f"pod_share: gives no pod with {storage_places(p)} storage locations per tier "
             f"(given: {p.pod_share})"
         ]
     return []

@@ -32,12 +32,17 @@ def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
     step = np.searchsorted(np.array(STEPS), mine.kind)
     same = np.append(False, mine.order[1:] == mine.order[:-1])
     before = np.append(-1, step[:-1])
-    faults = mine.lines(step != np.where(same, before + 1, 0), "out of turn, or twice")
+    faults = mine.lines(
+        step != np.where(same, before + 1, 0),
+        "a bundle must arrive, be assigned and be stored once each, in this order",
+    )
     changed = np.zeros(len(mine), np.bool_)
     for name, since in (("sku", 1), ("units", 1), ("pod", 2), ("station", 2)):
         column = getattr(mine, name)
         changed |= same & (step >= since) & np.append(False, column[1:] != column[:-1])
-    faults += mine.lines(changed, "is another bundle than before")
+    faults += mine.lines(
+        changed, "SKU, units, pod or station differ from those of the bundle's earlier event"
+    )
     space = skus["space"].to_numpy(np.float64)[np.maximum(mine.sku, 0)] * mine.units
     at = np.flatnonzero(step > 0)
     told = mine.taken(at)
@@ -53,9 +58,11 @@ def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
         if isinstance(station, ReplenishmentStation)
     }
     capacity = np.array([room.get(int(one), -1.0) for one in told.station[order]])
-    faults += told.taken(order).lines(loads > capacity + HAIR, "the station has no room for it")
+    faults += told.taken(order).lines(
+        loads > capacity + HAIR, "the bundle exceeds the station's capacity"
+    )
     return Chapter(
-        "bundles", f"{int((step == 0).sum())} came, {int((step == 2).sum())} stored", faults
+        "bundles", f"{int((step == 0).sum())} arrived, {int((step == 2).sum())} stored", faults
     )
 
 
@@ -66,6 +73,6 @@ def check_bound(rows: Rows) -> Chapter:
     units = np.where(mine.kind == Happening.UNITS_BOUND, mine.units, -mine.units).astype(np.float64)
     keys = (mine.order, mine.sku, mine.pod, mine.robot, mine.station)
     order, left = running(keys, units)
-    faults = mine.taken(order).lines(left < 0, "the pod was not brought for it")
+    faults = mine.taken(order).lines(left < 0, "the pod was not brought for this unit")
     bound = int(mine.units[mine.kind == Happening.UNITS_BOUND].sum())
     return Chapter("tasks", f"{bound} units bound to pods", faults)

@@ -37,14 +37,14 @@ class _Orders:
         for row, (kind, order, station, sku, units, time_us) in enumerate(told):
             if kind == Happening.ORDER_CREATED:
                 if order in self.wanted or order < 0:
-                    self._wrong(row, f"order {order} has come before")
+                    self._wrong(row, f"order {order} arrives a second time")
                 self.wanted[order], self.picked[order] = Counter(), Counter()
                 continue
             if order not in self.wanted:
-                self._wrong(row, f"order {order} has not come")
+                self._wrong(row, f"order {order} has not arrived yet")
                 continue
             if self.ended.get(order, time_us) != time_us:
-                self._wrong(row, f"order {order} has ended")
+                self._wrong(row, f"order {order} was completed or cancelled earlier")
             wants = self.wanted[order]
             if kind == Happening.ORDER_LINE and station < 0:
                 wants[sku] += units
@@ -56,7 +56,7 @@ class _Orders:
             elif kind == Happening.UNIT_PICKED:
                 self.picked[order][sku] += units
                 if self.picked[order][sku] > wants[sku]:
-                    self._wrong(row, f"order {order} wants no such unit of SKU {sku}")
+                    self._wrong(row, f"order {order} needs no more units of SKU {sku}")
             elif kind == Happening.ORDER_COMPLETED:
                 self._complete(row, order, units, time_us)
 
@@ -65,13 +65,20 @@ class _Orders:
         self.completed += 1
         wants, has = self.wanted[order], self.picked[order]
         if wants != has or not wants.total():
-            self._wrong(row, f"order {order} wants {wants.total()} units and has {has.total()}")
+            self._wrong(
+                row,
+                f"order {order} is completed, but the {has.total()} units picked for it are not "
+                f"the {wants.total()} units ordered",
+            )
         if units != wants.total():
-            self._wrong(row, f"order {order} has {wants.total()} units (recorded: {units})")
+            self._wrong(
+                row,
+                f"order {order} is completed with {units} units, but it has {wants.total()}",
+            )
 
     def _end(self, row: int, order: int, time_us: int) -> None:
         if order in self.ended:
-            self._wrong(row, f"order {order} has ended")
+            self._wrong(row, f"order {order} was already completed or cancelled")
         self.ended[order] = time_us
 
     def _wrong(self, row: int, what: str) -> None:
@@ -83,9 +90,9 @@ def check(rows: Rows) -> Chapter:
     orders = _Orders(rows.of_kind(*KINDS))
     orders.follow()
     open_ = [
-        f"order {order} has all it wants and is not completed"
+        f"order {order} has no units left to pick, but is not completed"
         for order, wants in orders.wanted.items()
         if order not in orders.ended and wants.total() == 0
     ]
-    told = f"{len(orders.wanted)} came, {orders.completed} are completed"
+    told = f"{len(orders.wanted)} arrived, {orders.completed} completed"
     return Chapter("orders", told, orders.faults + open_)

@@ -58,6 +58,6 @@ class Audit:
             if not chapter.faults:
                 lines.append(f"{chapter.name}: {chapter.told}: ok")
                 continue
-            lines.append(f"{chapter.name}: {chapter.told}: {len(chapter.faults)} faults")
+            lines.append(f"{chapter.name}: {chapter.told}: faults found: {len(chapter.faults)}")
             lines += [f"  {fault}" for fault in chapter.faults[:SHOWN]]
         return "\n".join(lines)

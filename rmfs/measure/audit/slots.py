@@ -36,7 +36,7 @@ def check(layout: Layout, rows: Rows) -> Chapter:
             (off.discard if units else off.add)(station)
             continue
         if station not in at:
-            faults.append(rows.tell(row, f"station {station} is no pick station"))
+            faults.append(rows.tell(row, f"station {station} is not a pick station"))
             continue
         here = at[station]
         if kind == Happening.ORDER_COMPLETED:
@@ -49,7 +49,13 @@ def check(layout: Layout, rows: Rows) -> Chapter:
             taken += 1
             here.add(order)
             if len(here) > slots[station]:
-                faults.append(rows.tell(row, f"station {station} has {slots[station]} slots"))
+                faults.append(
+                    rows.tell(
+                        row,
+                        f"station {station} has {len(here)} open orders, but only "
+                        f"{slots[station]} slots",
+                    )
+                )
             if station in off:
                 faults.append(rows.tell(row, f"station {station} is switched off"))
         elif kind == Happening.UNIT_PICKED:
@@ -60,5 +66,8 @@ def check(layout: Layout, rows: Rows) -> Chapter:
         else:
             faults.append(rows.tell(row, f"order {order} has no slot at station {station}"))
     for station, here in at.items():
-        faults += [f"order {order} is done and has a slot at {station}" for order in here & done]
-    return Chapter("slots", f"{taken} taken at {len(slots)} stations", faults)
+        faults += [
+            f"order {order} is completed, but still has a slot at station {station}"
+            for order in here & done
+        ]
+    return Chapter("slots", f"{taken} taken at pick stations", faults)

@@ -29,24 +29,32 @@ def check(layout: Layout, rows: Rows, skus: pd.DataFrame, pods: pd.DataFrame) ->
     """
     moved = rows.of_kind(Happening.STOCK, Happening.BUNDLE_STORED, Happening.UNIT_PICKED)
     named = (moved.pod >= 0) & (moved.sku >= 0) & (moved.units > 0)
-    faults = moved.lines(~named, "names no pod, no SKU or no units")
+    faults = moved.lines(~named, "the pod, the SKU or the number of units is missing")
     initial = moved.kind == Happening.STOCK
-    faults += moved.lines(initial & (moved.time_us > 0), "stock of time zero, recorded later")
+    faults += moved.lines(
+        initial & (moved.time_us > 0), "initial stock must be recorded at time zero"
+    )
     moved = moved.taken(named)
     sign = np.where(moved.kind == Happening.UNIT_PICKED, -1, 1)
     units = (sign * moved.units).astype(np.float64)
     order, there = running((moved.pod, moved.sku), units)
-    faults += moved.taken(order).lines(there < 0, "the pod has no such unit")
+    faults += moved.taken(order).lines(there < 0, "the pod holds no unit of this SKU")
     space = skus["space"].to_numpy(np.float64)[moved.sku] * units
     order, used = running((moved.pod,), space)
     full = used > np.asarray(layout.pod_capacity)[moved.pod[order]] + HAIR
-    faults += moved.taken(order).lines(full, "the pod holds more than it can")
+    faults += moved.taken(order).lines(full, "the pod holds more than its capacity")
     used_end = np.bincount(moved.pod, weights=space, minlength=layout.pods)
     off = np.abs(used_end - pods["used_end"].to_numpy(np.float64)) > HAIR
     faults += [
-        f"pod {pod}: the table pods says another space in use" for pod in np.flatnonzero(off)
+        f"table pods: used_end of pod {pod} differs from the {used_end[pod]:g} space units that "
+        "follow from the events"
+        for pod in np.flatnonzero(off)
     ]
     left = np.bincount(moved.sku, weights=units, minlength=len(skus))
     off = left != skus["units_end"].to_numpy(np.float64)
-    faults += [f"SKU {sku}: the table skus says other units" for sku in np.flatnonzero(off)]
-    return Chapter("stock", f"{len(moved)} movements of {len(skus)} SKUs", faults)
+    faults += [
+        f"table skus: units_end of SKU {sku} differs from the {left[sku]:g} units that follow "
+        "from the events"
+        for sku in np.flatnonzero(off)
+    ]
+    return Chapter("stock", f"{len(moved)} movements of units of {len(skus)} SKUs", faults)

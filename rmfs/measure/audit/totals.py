@@ -31,15 +31,23 @@ def check(
     for name, kind in COUNTED.items():
         count = len(measured.of_kind(kind))
         if count != int(footprint[name]):
-            faults.append(f"footprint: {name} is {footprint[name]}, and {count} happened")
+            faults.append(f"footprint: {name} is {footprint[name]}, but the events give {count}")
     picked = measured.of_kind(Happening.UNIT_PICKED)
     at = np.bincount(picked.station[picked.station >= 0], minlength=len(stations))
     off = at[: len(stations)] != stations["units_picked"].to_numpy()
-    faults += [f"station {one}: units picked are others" for one in np.flatnonzero(off)]
+    faults += [
+        f"table stations: units_picked of station {one} differs from the {at[one]} picks recorded"
+        for one in np.flatnonzero(off)
+    ]
     done = rows.of_kind(Happening.ORDER_COMPLETED)
     when = dict(zip(done.order.tolist(), (done.time_us / 1e6).tolist(), strict=True))
     told = orders.loc[orders["completed_s"].notna(), ["order", "completed_s"]]
     for order, completed_s in told.itertuples(index=False):
         if abs(when.get(order, np.inf) - completed_s) > 1e-5:
-            faults.append(f"orders: order {order} is completed at {completed_s:.6f} s, it says")
-    return Chapter("tables", f"{len(COUNTED)} figures and {len(told)} orders", faults)
+            faults.append(
+                f"table orders: completed_s of order {order} is {completed_s:.6f}, but no event "
+                "completes the order at this time"
+            )
+    return Chapter(
+        "tables", f"{len(COUNTED)} figures and {len(told)} completed orders compared", faults
+    )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
 
-WHERE = "no visit of this pod and robot at this station"
+WHERE = "this robot and pod are not visiting this station at this time"
 
 
 def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chapter:
@@ -32,14 +32,14 @@ def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chap
     """
     kinds = (Happening.VISIT_STARTED, Happening.VISIT_ENDED)
     visits = rows.of_kind(*kinds)
-    faults = visits.lines(visits.station < 0, "names no station")
+    faults = visits.lines(visits.station < 0, "the station is missing")
     visits = visits.taken(visits.station >= 0)
     order = np.lexsort((visits.number, visits.station))
     mine = visits.taken(order)
     starts = mine.kind == Happening.VISIT_STARTED
     same = np.append(False, mine.station[1:] == mine.station[:-1])
     again = np.append(False, starts[1:] == starts[:-1]) & same
-    faults += mine.lines(again & starts, "the visit before it has not ended")
+    faults += mine.lines(again & starts, "the previous visit to this station has not ended")
     faults += mine.lines(~starts & (again | ~same), WHERE)
     pair = np.append(False, ~starts[1:] & starts[:-1]) & same
     other = np.append(False, (mine.robot[1:] != mine.robot[:-1]) | (mine.pod[1:] != mine.pod[:-1]))
@@ -48,7 +48,7 @@ def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chap
     until = np.append(np.where(pair[1:], mine.time_us[1:], end_us), end_us)[: len(mine)]
     begun = np.flatnonzero(starts)
     faults += _standing(layout, mine.taken(begun), until[begun], motion)
-    return Chapter("visits", f"{len(begun)} at {len(layout.stations)} stations", faults)
+    return Chapter("visits", f"{len(begun)} to {len(layout.stations)} stations", faults)
 
 
 def _at_work(rows: Rows, visits: Rows, starts: NDArray[np.bool_]) -> list[str]:
@@ -86,4 +86,6 @@ def _standing(
         with_pod = (pod[span] == visits.pod[row]) if visits.pod[row] >= 0 else True
         here = robot[span] == visits.robot[row]
         wrong[row] = not np.all(stands & with_pod & here)
-    return visits.lines(wrong, "the robot does not stand there with the pod as the trace has it")
+    return visits.lines(
+        wrong, "in the trace, the robot does not stand at the station with this pod all the time"
+    )

@@ -28,16 +28,16 @@ MEANING = {
     FindingKind.GAP: "{amount:g} s are missing from the trace (negative: covered twice)",
     FindingKind.JUMP: "position jumps by {amount:g} m",
     FindingKind.HEADING: "heading is off by {amount:g} rad",
-    FindingKind.DURATION: "motion takes {amount:+g} s compared with the robot's limits",
+    FindingKind.DURATION: "duration is off by {amount:+g} s from that at the robot's limits",
     FindingKind.SPEED: "top speed in the trace is off by {amount:+g} m/s",
-    FindingKind.EDGE: "no straight chain of edges carries this run of {amount:g} m",
-    FindingKind.ELEVATOR_PAIR: "no elevator connects this place with waypoint {amount:g}",
-    FindingKind.ROBOTS_OVERLAP: "discs overlap by {amount:g} m",
+    FindingKind.EDGE: "this straight run of {amount:g} m does not follow edges of the layout",
+    FindingKind.ELEVATOR_PAIR: "no elevator connects this waypoint with waypoint {amount:g}",
+    FindingKind.ROBOTS_OVERLAP: "the robots overlap by {amount:g} m",
     FindingKind.POD_CROSSED: "carried pod overlaps a stored pod by {amount:g} m",
-    FindingKind.POD_PLACE: "pod {amount:g} set down where it cannot stand",
+    FindingKind.POD_PLACE: "pod {amount:g} is set down where no pod may be stored",
     FindingKind.POD_HANDLING: "pod {amount:g} is not where the robot takes, carries or leaves it",
-    FindingKind.ELEVATOR_SHARED: "elevator shared for {amount:g} s",
-    FindingKind.QUEUE_PLACE_SHARED: "queue place shared for {amount:g} s",
+    FindingKind.ELEVATOR_SHARED: "two robots share the elevator for {amount:g} s",
+    FindingKind.QUEUE_PLACE_SHARED: "two robots share the queue place for {amount:g} s",
 }
 """Message for each kind; `amount` is the number stored in the finding."""
 

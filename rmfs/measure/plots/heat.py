@@ -43,7 +43,7 @@ def heat(frame: pd.DataFrame, ax: Axes, *, column: str = "visits", tier: int = 0
     """
     counts = {one.name: one for one in HEAT[4:]}
     if column not in counts:
-        raise InputError(f"heat map of {column}: no such count; valid: {', '.join(counts)}")
+        raise InputError(f"heat map of {column}: unknown column; valid: {', '.join(counts)}")
     here = frame[frame["tier"] == tier]
     used = here[column] > 0
     ax.add_collection(_squares(here[~used], facecolor=UNUSED))

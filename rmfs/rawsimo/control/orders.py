@@ -100,7 +100,7 @@ ROA = {
     "Random": Rule(
         "random",
         {"Recycle": Switch("stick_to_station", True)},
-        {"Reactive": "RAWSim-O itself has dropped it"},
+        {"Reactive": "RAWSim-O no longer supports it"},
     ),
     "SamePod": Rule(
         "same-pod",

@@ -10,15 +10,17 @@ if TYPE_CHECKING:
     from rmfs.config import Table
     from rmfs.rawsimo.scenario.settings import Settings
 
-_BY_CLOCK = "limits count work here, so that results repeat"
+_BY_CLOCK = "rmfs limits searches by counted work instead of time, so that results are reproducible"
 _EVERYWHERE = {
-    "AutoSetParameter": "the values in the file are read, not those it sets",
+    "AutoSetParameter": "rmfs uses the values in the file",
     "RuntimeLimitPerAgent": _BY_CLOCK,
     "RunTimeLimitOverall": _BY_CLOCK,
-    "CanTunnel": "robots without a pod always pass beneath stored ones",
+    "CanTunnel": "robots without a pod can always pass beneath stored pods",
 }
-_EXACT_WAITS = {"LengthOfAWaitStep": "waits are as long as needed, not whole steps"}
-_DEADLOCKS = {"UseDeadlockHandler": "robots that stand still for 30 s always hop to a neighbour"}
+_EXACT_WAITS = {"LengthOfAWaitStep": "waiting times are exact, not multiples of a step"}
+_DEADLOCKS = {
+    "UseDeadlockHandler": "robots that stand still for 30 s always move to a neighbouring waypoint"
+}
 _PERIOD = {"Clocking": Number("period_s", 1.0)}
 _WINDOW = {"LengthOfAWindow": Number("window_s", 30.0)}
 
@@ -58,7 +60,7 @@ _RULES = {
             **_EVERYWHERE,
             **_EXACT_WAITS,
             **_DEADLOCKS,
-            "UseBias": "ways of others are not made dearer",
+            "UseBias": "the paths of other robots do not raise costs",
         },
     ),
     "BCP": Rule(
@@ -69,7 +71,7 @@ _RULES = {
     "CBS": Rule(
         "cbs",
         _PERIOD,
-        {**_EVERYWHERE, **_EXACT_WAITS, "SearchMethod": "the search is best first"},
+        {**_EVERYWHERE, **_EXACT_WAITS, "SearchMethod": "the search is always best-first"},
     ),
     "ODID": Rule(
         "od-id",
@@ -79,7 +81,7 @@ _RULES = {
             "LengthOfAWaitStep": Number("wait_s", 2.0),
             "MaxNodeCountPerAgent": Whole("nodes_per_robot", 100),
         },
-        {**_EVERYWHERE, "UseFinalReservations": "robots always end where they can stay"},
+        {**_EVERYWHERE, "UseFinalReservations": "paths always end where the robot can stay"},
     ),
     "PAS": Rule(
         "pas",
@@ -104,6 +106,8 @@ def pp(kind: str, block: Settings) -> Table:
     if kind in _RULES:
         return {**translated(block, _RULES[kind]), "runs_granted": 1}
     tags = [tag for tag in block.tags if tag != "Name"]
-    block.note(f"{kind} becomes time-windows, which plans each way once and without conflict")
+    block.note(
+        f"{kind} is replaced by time-windows, which plans each path once and without conflicts"
+    )
     block.leave(tags, "parameters of another planner")
     return {"name": "time-windows"}

@@ -81,10 +81,10 @@ ZONES: dict[str, Element] = {
 """The zones, which have their own block in the file."""
 
 _DEAD = {
-    "ScoreUpdateTimeout": "RAWSim-O itself never looks at it",
-    "ConsiderBacklogDemand": "RAWSim-O itself never looks at it",
-    "WeighSpeedByContainedCount": "RAWSim-O itself never looks at it",
-    "UseStaticItemFrequency": "RAWSim-O itself never looks at it",
+    "ScoreUpdateTimeout": "RAWSim-O itself never uses it",
+    "ConsiderBacklogDemand": "RAWSim-O itself never uses it",
+    "WeighSpeedByContainedCount": "RAWSim-O itself never uses it",
+    "UseStaticItemFrequency": "RAWSim-O itself never uses it",
 }
 _UTILITY: dict[str, Element] = {
     "BufferStorageLocations": Number("place_buffer", 0.05),
@@ -113,7 +113,7 @@ PSA = {
             ),
             "PodDisposeRule": Word("metric", METRICS, "ShortestTime"),
         },
-        {"EuclideanDistanceMetric": "RAWSim-O itself has dropped it, and takes the shortest time"},
+        {"EuclideanDistanceMetric": "RAWSim-O no longer supports it and uses the shortest time"},
     ),
     "Turnover": Rule(
         "turnover",
@@ -129,7 +129,7 @@ PSA = {
     "Utility": Rule("utility", _UTILITY, _DEAD),
 }
 
-_NEVER_CHECKED = {"GlobalTimeout": "RAWSim-O itself never looks at it"}
+_NEVER_CHECKED = {"GlobalTimeout": "RAWSim-O itself never uses it"}
 
 REPOSITIONING = {
     "Dummy": Rule("none"),

@@ -28,8 +28,8 @@ _REST = {
     "MiddleSameTier": "middle",
     "Nearest": "nearest",
 }
-_TIER = "robots rest, and pods go on to other stations, on their tier anyway"
-_DROPPED = "RAWSim-O itself has dropped it"
+_TIER = "robots always rest on their tier, and pods go on to stations of their tier"
+_DROPPED = "RAWSim-O no longer supports it"
 
 TA = {
     "Balanced": Rule(
@@ -62,7 +62,7 @@ TA = {
         },
         dict.fromkeys(
             ("OnTheFlyExtract", "OnTheFlyStore"),
-            "RAWSim-O itself looks at those of the pod selection only",
+            "RAWSim-O itself uses only those of the pod selection",
         ),
     ),
     "Swarm": Rule(
@@ -88,7 +88,7 @@ TA = {
             "SwitchModeIfNoWork": Switch("other_kind", True),
             "PreferSameTier": Switch("prefer_same_tier", True),
         },
-        {"DoRepositioningIfNoWork": "RAWSim-O itself never looks at it"},
+        {"DoRepositioningIfNoWork": "RAWSim-O itself never uses it"},
     ),
     "BruteForce": Rule("brute-force"),
 }
@@ -111,7 +111,7 @@ _LATENESS: dict[str, Element] = {
     "ValueMetric": Word("metric", _VALUES, "Picks"),
     "OnlyPositiveLateness": Switch("only_positive_lateness", False),
 }
-_OLD_AGE = {"IncludeAge": "RAWSim-O itself has dropped it; ValueMetric says it"}
+_OLD_AGE = {"IncludeAge": "RAWSim-O no longer supports it; ValueMetric takes its place"}
 _ON_ITS_TIER = {"PreferSameTier": _TIER}
 
 _PICK_POD = {
@@ -169,10 +169,10 @@ _OLD_ORDERS = (
 
 def ta(kind: str, block: Settings) -> Table:
     """Return the TA table for a task allocation, without its pod selection."""
-    block.leave(_OLD_ORDERS, "RAWSim-O itself has dropped it, and takes its default pod selection")
+    block.leave(_OLD_ORDERS, "RAWSim-O no longer supports it and uses its default pod selection")
     table = translated(block, TA[kind])
     if table.get("period_s") == 0:
-        block.note("a period of 0 means never: 10^9 s here")
+        block.note("a period of 0 means never: imported as 10^9 s")
         table["period_s"] = 1e9
     return table
 
@@ -189,7 +189,10 @@ def pps(kind: str, block: Settings) -> Table:
     table: Table = {"name": "lexicographic", **values_of(selection, _BINDING)}
     if kind == "Swarm":
         table |= {"late_picks": False, "late_bundles": False}
-        selection.note("Swarm binds nothing on the way, whatever OnTheFlyExtract and -Store say")
+        selection.note(
+            "OnTheFlyExtract and OnTheFlyStore not used: Swarm adds no requests to pods on their "
+            "way"
+        )
     table["pick_pod"] = _criteria(
         selection, "OutputPodScorer", _PICK_POD, ("Completeable", "WorkAmount", "Nearest")
     )
@@ -218,8 +221,8 @@ def _next_stations(selection: Settings, table: Table) -> None:
     named = [[criterion["criterion"] for criterion in criteria] for criteria in (picks, bundles)]
     if named[0] != named[1]:
         selection.note(
-            "pods that go on to another station are scored alike for both kinds of station: "
-            f"InputExtendedSearchScorer ({', '.join(named[1])}) is left out"
+            f"InputExtendedSearchScorer ({', '.join(named[1])}) not used: rmfs has one list of "
+            "criteria for the next station of a pod, taken from OutputExtendedSearchScorer"
         )
     for criterion, other in zip(picks, bundles, strict=True):
         if criterion["criterion"] == other["criterion"] == "work-amount":

@@ -74,7 +74,7 @@ def read_xconf(path: Path) -> ImportedControllers:
     table: Table = {"format": "rmfs-controllers/1", "name": root.text("Name") or path.stem}
     comments = [text for tag in _COMMENTS if (text := root.text(tag))]
     table["description"] = "; ".join(comments) or f"imported from RAWSim-O's {path.name}"
-    root.leave(_OLD_TYPES, "RAWSim-O itself has dropped it; the type of each block says it")
+    root.leave(_OLD_TYPES, "RAWSim-O no longer supports it; the type of each block takes its place")
     for problem, given in _BLOCKS.items():
         before = len(notes)
         block = root.block(given.tag)
@@ -98,7 +98,7 @@ def _method(given: _Block, block: Settings, root: Settings) -> str:
     if method not in given.methods:
         raise root.error(
             given.tag,
-            f"type {block.kind:.60} is unknown or has no rule here; known methods: "
+            f"type {block.kind:.60} is unknown or has no counterpart in rmfs; known methods: "
             f"{', '.join(given.methods)}",
         )
     return method
@@ -113,14 +113,14 @@ def _let_robots_decide(table: Table, notes: list[str]) -> None:
     brute = table["ta"]["name"] == "brute-force"
     if brute and table["psa"]["name"] != "dummy":
         name = table["psa"]["name"]
-        notes.append(f"PodStorageConfig: {name} not used: robots park by themselves")
+        notes.append(f"PodStorageConfig: {name} not used: BruteForce also stores pods")
         table["psa"] = {"name": "dummy"}
     if table["rps"]["name"] == "dummy":
         notes.append(
-            "ItemStorageConfig: bundles are brought to the pods that RPS chooses, which must be a "
-            "rule: random takes the place of the dummy"
+            "ItemStorageConfig: random replaces the dummy: rmfs needs a rule that chooses the pods "
+            "of bundles"
         )
         table["rps"] = {"name": "random"}
     if table["psa"]["name"] == "dummy" and not brute:
-        notes.append("PodStorageConfig: nobody parks pods: random takes the place of the dummy")
+        notes.append("PodStorageConfig: random replaces the dummy: a rule must store the pods")
         table["psa"] = {"name": "random"}

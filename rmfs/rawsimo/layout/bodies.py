@@ -43,14 +43,16 @@ def pods(
             tier = instance.position("Tier", fields.whole("Tier"), fields.label)
             waypoint = nearest.to(fields.number("X"), fields.number("Y"), tier)
             if waypoint is None:
-                instance.problems.add(f"{fields.label}: no storage location on its tier")
+                instance.problems.add(f"{fields.label}: there is no storage location on its tier")
         found.append({"waypoint": waypoint or 0, "capacity": fields.number("Capacity")})
     if searched:
         instance.remarks.append(
-            f"{searched} pods named by no waypoint: put at the nearest storage location"
+            f"{searched} pods are named by no waypoint and were put at the nearest storage location"
         )
     if len(radii) > 1:
-        instance.remarks.append(f"pods of {len(radii)} radii: the largest is used for all")
+        instance.remarks.append(
+            f"pods have {len(radii)} different radii: the largest is used for all"
+        )
     return found, max(radii, default=_POD_RADIUS_M)
 
 
@@ -64,7 +66,7 @@ def robots(instance: Instance, waypoints: list[Table]) -> tuple[list[Table], lis
         tier = instance.position("Tier", fields.whole("Tier"), fields.label)
         waypoint = nearest.to(fields.number("X"), fields.number("Y"), tier)
         if waypoint is None:
-            instance.problems.add(f"{fields.label}: no waypoint on its tier")
+            instance.problems.add(f"{fields.label}: there is no waypoint on its tier")
         found.append(
             {
                 "waypoint": waypoint or 0,

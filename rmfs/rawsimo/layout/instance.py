@@ -143,15 +143,17 @@ class Instance:
         """Remark on what is known but has no meaning here."""
         if semaphores := self._elements["Semaphore"]:
             self.remarks.append(
-                f"{len(semaphores)} semaphores left out: only RAWSim-O's legacy robot heeds them"
+                f"{len(semaphores)} semaphores left out: only RAWSim-O's legacy robots obey them"
             )
         if any("CollisionPenaltyTime" in bot.attrib for bot in self._elements["Bot"]):
-            self.remarks.append("Bot.CollisionPenaltyTime left out: robots never collide here")
+            self.remarks.append("Bot.CollisionPenaltyTime left out: robots never collide in rmfs")
         if any(pod.get("Orientation", "0") != "0" for pod in self._elements["Pod"]):
             self.remarks.append("Pod.Orientation left out: pods are discs")
         for name in ("RelativePositionX", "RelativePositionY"):
             if any(tier.get(name, "0") != "0" for tier in self._elements["Tier"]):
-                self.remarks.append(f"Tier.{name} left out: tiers lie above each other")
+                self.remarks.append(
+                    f"Tier.{name} left out: in rmfs, tiers lie exactly above each other"
+                )
 
 
 def _listed(root: Element, name: str, kind: str) -> list[Element]:

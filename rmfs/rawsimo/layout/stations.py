@@ -40,8 +40,8 @@ def pick_stations(instance: Instance, occupants: Occupants) -> list[Table]:
         )
     if without:
         instance.remarks.append(
-            f"{without} pick stations without ItemPickTime: the robot is held as long as the "
-            "station (ItemTransferTime)"
+            f"{without} pick stations have no ItemPickTime: a unit occupies the robot as long as "
+            "the station (ItemTransferTime)"
         )
     return stations
 
@@ -116,7 +116,8 @@ def _ranks(instance: Instance, kind: str) -> list[int]:
         ranks[position] = rank
     if ranks != given:
         instance.remarks.append(
-            f"{kind}.ActivationOrderID missing or not 1 to {len(given)}: ranked by it and by the "
+            f"{kind}.ActivationOrderID is missing or not 1 to {len(given)}: ranked by it, then "
+            "by the "
             "order of the file"
         )
     return ranks
@@ -131,7 +132,7 @@ def _station_queue(instance: Instance, kind: str, position: int, occupants: Occu
     head = occupants[kind, position]
     queues = _queues(instance, element, label)
     if queues.keys() - {head}:
-        instance.problems.add(f"{label}: a queue belongs to another waypoint")
+        instance.problems.add(f"{label}: one of its queues belongs to another waypoint")
     return _headed(instance, queues.get(head, []), head, label)
 
 
@@ -141,7 +142,9 @@ def _queues(instance: Instance, element: Element, label: str) -> dict[int, list[
     for entry in element.iterfind("Queues/Queues"):
         pair = slashed(entry.text, 2)
         if pair is None:
-            instance.problems.add(f"{label}: expected a queue place KEY/PLACE ({entry.text!r})")
+            instance.problems.add(
+                f"{label}: expected a queue place KEY/PLACE (given: {entry.text!r})"
+            )
             continue
         key, place = (instance.waypoint(text, label) for text in pair)
         queues.setdefault(key, []).append(place)
@@ -151,7 +154,7 @@ def _queues(instance: Instance, element: Element, label: str) -> dict[int, list[
 def _headed(instance: Instance, queue: list[int], head: int, label: str) -> list[int]:
     """Make sure that a queue begins where it is served."""
     if not queue:
-        instance.remarks.append(f"{label}: without queue, the only place is the one served")
+        instance.remarks.append(f"{label}: has no queue; its own waypoint is its only queue place")
     elif queue[0] != head:
-        instance.remarks.append(f"{label}: the place served was put first in its queue")
+        instance.remarks.append(f"{label}: its own waypoint was put first in its queue")
     return [head, *(place for place in queue if place != head)]

@@ -95,4 +95,6 @@ def add_edges(instance: Instance, waypoints: list[Table], rides: set[tuple[int, 
                 across += (v, head) not in rides
         waypoints[v]["to"] = heads
     if across:
-        instance.remarks.append(f"{across} edges between tiers left out: they belong to no lift")
+        instance.remarks.append(
+            f"{across} edges between tiers left out: they belong to no elevator"
+        )

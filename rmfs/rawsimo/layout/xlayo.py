@@ -53,7 +53,7 @@ _SWITCHES: dict[str, str] = {
     "CounterClockwiseRingwayDirection": "counter_clockwise_ring",
 }
 _PATTERNS = {"Tim": "tim", "HighwayHallway": "highway"}
-_UNUSED = {"CollisionPenaltyTime": "robots never collide here"}
+_UNUSED = {"CollisionPenaltyTime": "robots never collide in rmfs"}
 _KNOWN = {
     "NameLayout",
     "AisleLayoutType",
@@ -108,7 +108,7 @@ def read_xlayo_table(path: Path) -> tuple[Table, list[str]]:
         else:
             _put(table, key, value)
     if "Seed" not in seen:
-        notes.append("Seed is absent: 0")
+        notes.append("Seed is missing: 0 is used")
     stop_if_any(problems, path)
     return table, notes + unknown.notes()
 

@@ -65,8 +65,8 @@ class Arrivals:
         if self._mode == "stream":
             self._leave_load_limit("bundles come from the file")
             self._block.note(
-                "fixed orders have no due times: they are drawn as orders.due says "
-                "(RAWSim-O: never late)"
+                "fixed orders have no due times: they are drawn by orders.due (in RAWSim-O, fixed "
+                "orders are never late)"
             )
             return {"mode": "stream", "file": self._file}, {"mode": "stream", "file": self._file}
         if self._mode == "poisson":
@@ -114,11 +114,13 @@ class Arrivals:
     def _load_limit(self) -> float:
         limit = self._block.number("BufferBundlesUntilInventoryLoad", 1.1)
         self._block.note(
-            "BufferBundlesUntilInventoryLoad compares space with space (RAWSim-O adds the units of "
-            "a bundle to it)"
+            "BufferBundlesUntilInventoryLoad limits the load in space units (RAWSim-O adds the "
+            "number of units of a bundle to it)"
         )
         if self._block.switch("IgnoreCapacityForBundleGeneration", default=False):
-            self._block.note("IgnoreCapacityForBundleGeneration: the load limit is very large")
+            self._block.note(
+                "IgnoreCapacityForBundleGeneration: imported as a very large load limit"
+            )
             return UNBOUNDED_SHARE
         return limit
 
@@ -163,10 +165,10 @@ class Arrivals:
             "profile": self._profile(poisson, kind, "Bundle", high_per_h=75.0, affected=False),
         }
         poisson.leave_rest()
-        self._leave_load_limit("bundles that find no room wait")
+        self._leave_load_limit("bundles for which there is no room wait")
         self._block.note(
-            "Poisson orders are drawn whatever is in stock, and what stock cannot serve waits "
-            "(RAWSim-O draws from stock and rejects an order that nothing can serve)"
+            "Poisson orders do not depend on stock, and orders that stock cannot serve wait "
+            "(RAWSim-O draws them from stock and rejects orders that it cannot serve)"
         )
         if self._letters:
             self._block.note("bundles of letters are drawn by popularity, not by need")
@@ -190,8 +192,8 @@ class Arrivals:
         if kind != "steps":
             return {"kind": "constant"}
         self._block.note(
-            f"rates of {word.lower()}s hold exactly at the borders of steps, and their mean is the "
-            "given one (RAWSim-O weighs each step with the length of the step before)"
+            f"rates of {word.lower()}s change exactly at the start of a step, and their mean is "
+            "the given rate (RAWSim-O weights each step by the length of the previous step)"
         )
         return {"kind": "steps", "cycle_s": cycle_s} | steps(weights)
 

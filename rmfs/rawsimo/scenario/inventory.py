@@ -61,7 +61,7 @@ class Inventory:
             ["WarmupOrderCount"], "popularity is known and need not be estimated from orders"
         )
         block.leave(
-            _DEAD_DUE_TIMES, "RAWSim-O itself has dropped it, and takes the default due times"
+            _DEAD_DUE_TIMES, "RAWSim-O no longer supports it and uses the default due times"
         )
         block.leave_rest()
         return tables
@@ -73,7 +73,7 @@ class Inventory:
             return None
         named = self._block.block(fixed).text("OrderFile")
         if not named:
-            raise self._block.error("OrderFile", "is empty, but OrderMode is Fixed")
+            raise self._block.error("OrderFile", "is empty, but required if OrderMode is Fixed")
         return str(find_beside(self._path, named, ".xitem"))
 
     def _skus(self, order_file: str | None) -> Table:

@@ -45,7 +45,7 @@ def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
             block.leave(values, f"{switch} is not true")
             continue
         if len(values) != 1:
-            raise block.error(switch, "is true, but has not one value")
+            raise block.error(switch, "is true, so exactly one value must be given")
         key = _NUMBERS.get(switch) or _COUNTS[switch]
         value = block.whole(values[0], 0) if switch in _COUNTS else block.number(values[0], 0.0)
         overrides.append((["layout", key], value))

@@ -32,7 +32,7 @@ def find_beside(settings: Path, named: str, suffix: str) -> Path:
     # the names were written on Windows
     path = Path(PureWindowsPath(named).as_posix())
     if path.suffix.lower() != suffix:
-        raise InputError(f"{settings}: names the file {named!r:.80}, expected a {suffix} file")
+        raise InputError(f"{settings}: names the file {named!r:.80}, which must end in {suffix}")
     folder = settings.resolve().parent
     candidates = [folder / path]
     for above in (folder, *folder.parents):
@@ -41,6 +41,6 @@ def find_beside(settings: Path, named: str, suffix: str) -> Path:
         if candidate.is_file():
             return candidate.resolve()
     raise InputError(
-        f"{settings}: names the file {named}, which is not beside it and in no folder of resources "
-        "above it"
+        f"{settings}: names the file {named}, which is neither in the same folder nor in a folder "
+        "of resources above it"
     )

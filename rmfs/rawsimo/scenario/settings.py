@@ -147,8 +147,8 @@ class Settings:
         unknown = [tag for tag in self._elements if tag not in self._read]
         if unknown:
             self.note(
-                f"{', '.join(unknown)} unknown, left out "
-                "(RAWSim-O ignores what it does not know without a word)"
+                f"{', '.join(unknown)} unknown, left out (RAWSim-O silently ignores unknown "
+                "elements)"
             )
 
     def _pairs(self, tag: str) -> list[tuple[str, str]]:

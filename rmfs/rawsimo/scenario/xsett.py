@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 ROOT = "SettingConfiguration"
 
 _NOT_USED = {
-    "the seed is given with the run": ("Seed",),
-    "what is printed and written does not depend on the scenario": (
+    "the seed is an option of rmfs run": ("Seed",),
+    "the scenario does not determine what is printed and written": (
         *("LogLevel", "LogFileLevel", "DebugMode", "MonitorWellSortedness"),
         *("IntenseLocationPolling", "StationShutdownThresholdTime"),
     ),
@@ -30,9 +30,11 @@ _NOT_USED = {
     "robots always accelerate, turn in time and use queue zones": (
         *("UseAcceleration", "UseTurnDelay", "QueueHandlingEnabled"),
     ),
-    "drawing only": ("RotatePods",),
-    "a controller that needs it counts for itself": ("CorrelativeFrequencyTracking",),
-    "RAWSim-O itself has dropped it": ("HeatMode", "PPInstanceDumpFrequency"),
+    "only for drawing": ("RotatePods",),
+    "a controller that needs these frequencies counts them itself": (
+        "CorrelativeFrequencyTracking",
+    ),
+    "RAWSim-O no longer supports it": ("HeatMode", "PPInstanceDumpFrequency"),
 }
 _COMMENTS = ("CommentTag1", "CommentTag2", "CommentTag3")
 

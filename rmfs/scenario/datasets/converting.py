@@ -87,17 +87,22 @@ def convert(
     if out.suffix.lower() != ".csv":
         raise InputError(f"{out}: must end in .csv")
     if layout == "instacart" and (begin or end):
-        raise InputError("layout instacart has no dates: all orders come within one week")
+        raise InputError(
+            "--from, --to: cannot be used with layout instacart, which has no dates: all orders "
+            "arrive within one week"
+        )
     rng = np.random.default_rng(seed)
     orders = Orders(partial(_takes, begin, end, share, rng))
     LAYOUTS[layout].read(paths, orders)
     taken = orders.taken()
     if not taken:
-        raise InputError(f"{paths[0]}: no order is left{_reasons(orders)}")
+        raise InputError(f"{paths[0]}: no orders remain{_reasons(orders)}")
     lines = sum(len(order.units) for _, order in taken)
     if lines > MOST_LINES:
-        raise InputError(f"{paths[0]}: {lines} lines, but a file has {MOST_LINES} at most; "
-                         "take a share, or fewer days")  # fmt: skip
+        raise InputError(
+            f"{paths[0]}: gives {lines} order lines, but a file may have at most {MOST_LINES}; "
+            "use --share, or fewer days (--from, --to)"
+        )
     _write(taken, out)
     units = sum(sum(order.units.values()) for _, order in taken)
     skus = len({sku for _, order in taken for sku in order.units})

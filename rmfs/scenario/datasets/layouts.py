@@ -79,9 +79,9 @@ def online_retail(paths: Sequence[Path], orders: Orders) -> None:
             if not name.isdecimal():
                 orders.left_out["lines of cancelled or corrected invoices"] += 1
             elif not sku[:5].isdecimal() or len(sku) < 5:
-                orders.left_out["lines that are no products (postage, fees)"] += 1
+                orders.left_out["lines that are not products (postage, fees)"] += 1
             elif units < 1:
-                orders.left_out["lines that take units back"] += 1
+                orders.left_out["lines that are returns"] += 1
             else:
                 order = orders.begin(name, moment)
                 if order is None:

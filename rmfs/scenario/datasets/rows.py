@@ -125,7 +125,7 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: not text in UTF-8") from None
+        raise InputError(f"{path}: is not UTF-8 text") from None
     except csv.Error as error:
         line = reader.line_num if reader is not None else 1
         raise InputError(f"{path}: line {line}: {error}") from None

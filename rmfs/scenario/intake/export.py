@@ -90,8 +90,8 @@ def export_stream(
     except _DependsOnRunError:
         table = "demand" if what == "orders" else "replenishment"
         raise InputError(
-            f"{scenario.name}: {table}: its {what} depend on what happens in a run; "
-            "they can be recorded, not exported"
+            f"{scenario.name}: {table}: {what} that depend on what happens in a run cannot be "
+            "exported; record them with rmfs run --record"
         ) from None
     return ExportedStream(path, write_stream(stream, skus, path), len(stream))
 

@@ -68,7 +68,9 @@ def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: in
     else:
         rate = _Constant(per_h * scale)
     if rate.peak_per_h > MOST_PER_H:
-        raise InputError(f"a rate of {rate.peak_per_h:g} per h is too large (most: {MOST_PER_H:g})")
+        raise InputError(
+            f"a rate of {rate.peak_per_h:g} per h is too high (maximum: {MOST_PER_H:g})"
+        )
     return rate
 
 

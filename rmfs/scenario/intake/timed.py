@@ -55,8 +55,8 @@ class Timed(Generic[T]):
             return
         if not isinstance(self._candidates, Poisson):
             raise InputError(
-                "looking ahead: orders or bundles come from a file, and what it holds must not be "
-                "known before; use demand that is drawn"
+                "looking ahead: not possible with orders or bundles from a file, as their future "
+                "arrivals must be unknown; use drawn demand"
             )
         self._candidates.redraw(now_us)
         self._next = next(self._candidates, None)

@@ -115,5 +115,5 @@ class Scenario(Block):
         if isinstance(value, Orders) and isinstance(skus, GeneratedSkus):
             not_above_skus(value.lines.max, skus.count)
         if skus is not None and isinstance(value, WordOrders) != isinstance(skus, LetterSkus):
-            raise ValueError('content = "words" requires skus.words, and skus.words requires it')
+            raise ValueError('content = "words" and skus.words must be used together')
         return value

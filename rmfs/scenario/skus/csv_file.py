@@ -54,13 +54,13 @@ def read_sku_table(path: Path) -> SkuFileContent:
         for column, place in known.items():
             found[column].append(fields[place])
     if not lines:
-        raise InputError(f"{path}: holds no SKU")
+        raise InputError(f"{path}: contains no SKU")
     if {"order", "quantity"} <= set(head) and known.keys() == {"sku"}:
         found, lines = _ordered(found["sku"], lines)
     ids, names = _named(found["sku"], lines, path)
     popularity = _numbers(found, "popularity", lines, path, least=0.0)
     if popularity is not None and not popularity.any():
-        raise InputError(f"{path}: popularity: one must be positive")
+        raise InputError(f"{path}: popularity: at least one value must be positive")
     space = _numbers(found, "space_per_unit", lines, path, least=np.nextafter(0.0, 1.0))
     units = _numbers(found, "bundle_units", lines, path, least=1.0, whole=True)
     return SkuFileContent(

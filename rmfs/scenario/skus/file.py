@@ -112,7 +112,7 @@ def read_sku_set(path: Path) -> SkuSet:
     if len(np.unique(ids)) < len(ids):
         raise InputError(f"{source}: ids: a SKU occurs twice")
     if not any(given.popularity):
-        raise InputError(f"{source}: popularity: one must be positive")
+        raise InputError(f"{source}: popularity: at least one value must be positive")
     skus = SkuSet(
         ids=ids,
         popularity=exact.significant(np.array(given.popularity)),
@@ -122,7 +122,10 @@ def read_sku_set(path: Path) -> SkuSet:
         names=tuple(given.names),
     )
     if given.digest not in (None, skus.digest()):
-        raise InputError(f"{source}: digest: is {skus.digest()} (given: {given.digest!r:.80})")
+        raise InputError(
+            f"{source}: digest: does not match the content, whose digest is {skus.digest()} "
+            f"(given: {given.digest!r:.80})"
+        )
     return skus
 
 

@@ -108,13 +108,15 @@ def _read_words(path: Path) -> tuple[str, ...]:
                 if not raw:
                     break
                 if len(raw) == _LONGEST_LINE or number > MOST_WORDS:
-                    problems.add(f"line {number}: too long, or one too many")
+                    problems.add(
+                        f"line {number}: is too long, or beyond the maximum of {MOST_WORDS} words"
+                    )
                     break
                 word = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip().lower()
                 if len(word) > LONGEST_WORD:
-                    problems.add(f"line {number}: longer than {LONGEST_WORD} letters")
+                    problems.add(f"line {number}: is longer than {LONGEST_WORD} letters")
                 elif word and not word.isalpha():
-                    problems.add(f"line {number}: {word!r:.40} has other signs than letters")
+                    problems.add(f"line {number}: {word!r:.40} must consist of letters only")
                 elif word:
                     words.append(word)
     except OSError as error:

@@ -52,7 +52,7 @@ class SkuSet:
                 raise ValueError("all arrays of a SKU set must have the same length")
             array.setflags(write=False)
         if self.names and len(self.names) != len(self.ids):
-            raise ValueError("all SKUs of a set must have a name, or none")
+            raise ValueError("either all SKUs of a set must have a name, or none")
 
     def __len__(self) -> int:
         return len(self.ids)

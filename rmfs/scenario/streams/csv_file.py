@@ -60,9 +60,9 @@ def _fields(raw: bytes, number: int) -> list[str]:
     if len(raw) > LONGEST_LINE:
         raise _UnreadableError(f"longer than {LONGEST_LINE} bytes")
     if b"\0" in raw:
-        raise _UnreadableError("not text: holds a zero byte")
+        raise _UnreadableError("is not text: contains a zero byte")
     try:
         text = raw.decode("utf-8-sig" if number == 1 else "utf-8")
     except UnicodeDecodeError:
-        raise _UnreadableError("not text in UTF-8") from None
+        raise _UnreadableError("is not UTF-8 text") from None
     return [field.strip() for field in next(csv.reader([text.strip("\r\n")], strict=True), [])]

@@ -180,11 +180,11 @@ class OrderRows(_StreamRows):
             self._priority = priority
             self.file.add_order(name)
         elif time_us != self._time_us:
-            raise FieldError(f"time differs from the line before of order {name:.40}")
+            raise FieldError(f"time differs from that of the previous line of order {name:.40}")
         elif due_us != self._due_us:
-            raise FieldError(f"due differs from the line before of order {name:.40}")
+            raise FieldError(f"due differs from that of the previous line of order {name:.40}")
         elif priority != self._priority:
-            raise FieldError(f"priority differs from the line before of order {name:.40}")
+            raise FieldError(f"priority differs from that of the previous line of order {name:.40}")
         if index in self._skus:
             raise FieldError(f"sku {sku} occurs twice in order {name:.40}")
         self._skus.append(index)
@@ -193,7 +193,9 @@ class OrderRows(_StreamRows):
 
     def _class(self, text: str) -> int:
         if text and text not in self._classes:
-            raise FieldError(f"priority {text:.40} is no class; valid: {', '.join(self._classes)}")
+            raise FieldError(
+                f"priority {text:.40} is not a class; valid: {', '.join(self._classes)}"
+            )
         return self._classes.index(text) if text else NO_CLASS
 
     def _begin(self, name: str) -> None:
@@ -205,15 +207,17 @@ class OrderRows(_StreamRows):
         self._name = name
         if name in self._names:
             raise FieldError(
-                "order is one that ended before; the lines of an order must follow each other"
+                "order occurs again after another order; the lines of an order must be consecutive"
             )
         self._names.add(name)
 
     def _set_times(self, time_us: int, due_us: int, time: str) -> None:
         if time_us < self._time_us:
-            raise FieldError(f"time {time} is before that of the order before; sort the file by it")
+            raise FieldError(
+                f"time {time} is earlier than that of the previous order; sort the file by time"
+            )
         if due_us not in (NO_DUE_US, max(due_us, time_us)):
-            raise FieldError("due is before time")
+            raise FieldError("due is earlier than time")
         self._time_us, self._due_us = time_us, due_us
 
     def _close(self) -> None:
@@ -267,7 +271,7 @@ class BundleRows(_StreamRows):
             raise FieldError("due must be empty: bundles have no due time")
         if time_us < self._time_us:
             raise FieldError(
-                f"time {time} is before that of the bundle before; sort the file by it"
+                f"time {time} is earlier than that of the previous bundle; sort the file by time"
             )
         space = units * float(self._space_per_unit[index])
         if space > self._largest:

@@ -60,7 +60,7 @@ class Times:
             self._moments = moment is not None
         elif self._moments != (moment is not None):
             kind = f"a time such as {EXAMPLE}" if self._moments else "a number of s"
-            raise FieldError(f"{column} must be {kind}, as before (given: {text!r:.40})")
+            raise FieldError(f"{column} must be {kind}, as in earlier lines (given: {text!r:.40})")
         return moment
 
     def _since_zero(self, column: str, moment: datetime, text: str) -> int:
@@ -70,7 +70,7 @@ class Times:
             self._zero = self._zero.replace(tzinfo=moment.tzinfo)
         if moment.tzinfo is None and self._zero.tzinfo is not None:
             zone = self._zero.isoformat()
-            raise FieldError(f"{column} must have a zone, as {zone} has (given: {text:.40})")
+            raise FieldError(f"{column} must have a time zone, as {zone} has (given: {text:.40})")
         time_us = (moment - self._zero) // _US
         if not 0 <= time_us <= LATEST_S * 1e6:
             zero = self._zero.isoformat()

@@ -60,7 +60,7 @@ def agreements(
     data, twin = _figures(stream, days, cycle_h), _figures(made, watched, cycle_h)
     tests = {
         "share of the orders for the most popular tenth": p_popularity,
-        "variance / mean of the orders of an hour": p_arrivals,
+        "variance / mean of the orders per hour": p_arrivals,
     }
     return [Agreement(name, data[name], twin[name], tests.get(name, np.nan)) for name in data]
 
@@ -75,11 +75,13 @@ def _figures(stream: OrderStream, days: int, cycle_h: int) -> dict[str, float]:
     arrivals = fit_arrivals(stream.time_us - begin_us, days, cycle_h)
     return {
         "orders per h": arrivals.mean.value,
-        "variance / mean of the orders of an hour": arrivals.dispersion,
+        "variance / mean of the orders per hour": arrivals.dispersion,
         "lines per order, mean": float(lines.mean()),
         "lines per order, sd": float(lines.std()),
         "units per line, mean": float(stream.units.mean()),
         "units per line, sd": float(stream.units.std()),
         "share of the orders for the most popular tenth": float(often[:tenth].sum() / often.sum()),
-        "pairs that come again, over chance": lift(first, second, int(stream.sku.max()) + 1),
+        "repeated pairs of SKUs, relative to chance": lift(
+            first, second, int(stream.sku.max()) + 1
+        ),
     }

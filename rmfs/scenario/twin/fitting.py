@@ -100,19 +100,20 @@ def _fitted(stream: OrderStream, name: str, seed: int, *, weekly: bool, listed: 
     days = int(stream.time_us[-1]) // day_us - first + 1
     cycle_h = WEEK_H if weekly else DAY_H
     if days * DAY_H < cycle_h:
-        raise InputError(f"rates of a week need orders of 7 days (given: {days})")
+        raise InputError(f"--weekly: needs orders of at least 7 days (given: {days})")
     arrivals = fit_arrivals(stream.time_us - first * day_us, days, cycle_h)
     often = np.unique(stream.sku[stream.first_line[:-1]], return_counts=True)[1]
     popularity = None if listed else fit_popularity(often)
     if popularity is not None and popularity.skus.value > MOST_UNSEEN * len(often):
         raise InputError(
-            f"popularity is too uneven for gamma weights: a fit finds {popularity.skus.value:.0f} "
-            f"SKUs where {len(often)} were ordered; --listed keeps the popularity of each"
+            "popularity is too uneven for gamma weights: the fit estimates "
+            f"{popularity.skus.value:.0f} SKUs, although only {len(often)} were ordered; use "
+            "--listed, which keeps the popularity of each SKU"
         )
     count = len(often) if popularity is None else round(popularity.skus.value)
     lines, units = _listed(np.diff(stream.first_line)), _listed(stream.units)
     if count < lines.max:
-        raise InputError(f"an order has {lines.max} lines, but a fit finds {count} SKUs")
+        raise InputError(f"an order has {lines.max} lines, but the fit estimates {count} SKUs")
     skus = GeneratedSkus(count=count, seed=seed)
     weights = None
     if popularity is None:

@@ -59,8 +59,9 @@ def fit_popularity(counts: NDArray[np.int64]) -> Popularity:
     values, often = np.unique(counts, return_counts=True)
     if len(counts) < LEAST_SKUS or values[-1] < 2:
         raise InputError(
-            f"the orders are too few for a fit: {LEAST_SKUS} SKUs, and one ordered twice, are "
-            f"needed (given: {len(counts)} SKUs, most orders of one: {values[-1]})"
+            f"there are too few orders for a fit: at least {LEAST_SKUS} SKUs are needed, one of "
+            f"them ordered twice (given: {len(counts)} SKUs, each ordered at most {values[-1]} "
+            "times)"
         )
 
     def loss(logs: NDArray[np.float64]) -> float:

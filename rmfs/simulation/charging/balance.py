@@ -86,12 +86,12 @@ def refuse(layout: Layout, energy: Energy) -> None:
     found = balance(layout, energy)
     if not found.given_w:
         raise InputError(
-            "scenario.energy.battery: nothing charges: the layout has no station of the kind "
-            "charger or swap, and scenario.energy.inductive is not given"
+            "scenario.energy.battery: batteries cannot be charged: the layout has no station of "
+            "the kind charger or swap, and scenario.energy.inductive is not given"
         )
     if found.given_w < found.least_w:
         raise InputError(
-            f"scenario.energy.battery: {layout.robots} robots draw {found.least_w:g} W standing "
-            f"still, and all chargers together give {found.given_w:g} W: "
+            f"scenario.energy.battery: {layout.robots} robots draw {found.least_w:g} W even at "
+            f"standstill, but all chargers together supply only {found.given_w:g} W: "
             f"{found.least_w - found.given_w:g} W are missing in the long run"
         )

@@ -76,14 +76,17 @@ class Replay:
         at_s = call.requested_us / 1e6
         asked = f"question {call.number} ({call.problem} at {at_s:.6f} s)"
         if call.number >= len(self._rows):
-            raise ReplayError(f"{self._run}: {asked} was never asked there")
+            raise ReplayError(f"{self._run}: does not contain {asked}")
         row = self._rows[call.number]
         there = f"{row['problem']} at {row['requested_us'] / 1e6:.6f} s"
         if (row["problem"], int(row["requested_us"])) != (str(call.problem), call.requested_us):
-            raise ReplayError(f"{self._run}: {asked} was {there} there: the run is another one")
+            raise ReplayError(
+                f"{self._run}: {asked} was recorded as {there}: layout, scenario, controllers, "
+                "seed or version differ"
+            )
         if row["state"] != call.state:
             raise ReplayError(
-                f"{self._run}: {asked} was asked in another state there: layout, scenario, "
+                f"{self._run}: {asked} was recorded in another state: layout, scenario, "
                 "controllers, seed or version differ"
             )
         return row

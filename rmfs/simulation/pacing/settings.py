@@ -111,7 +111,7 @@ def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) 
     if name not in MODES:
         near = difflib.get_close_matches(name, MODES, n=1)
         hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(MODES)}"
-        raise InputError(f"pacing {mode}: no such mode; {hint}")
+        raise InputError(f"pacing {mode}: unknown mode; {hint}")
     table: Table = {"mode": name}
     if equals:
         if name not in _ARGUMENTS:

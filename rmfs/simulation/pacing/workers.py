@@ -101,7 +101,7 @@ class Worker:
             try:
                 _, failure = self._read(READY)[1:]
             except DeadWorkerError:
-                failure = "it ended"
+                failure = "its process ended"
             if failure:
                 self.stop()
                 raise OptimiserError(f"a worker cannot start: {failure}")

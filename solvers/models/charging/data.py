@@ -121,8 +121,8 @@ class Charging:
         robots, groups = way_s.shape
         wanted = integers("wanted", self.wanted, (None, None), low=0)
         cases, slots = wanted.shape
-        require(cases > 0, "wanted", "must have a case")
-        require(slots > 0, "wanted", "must have a slot")
+        require(cases > 0, "wanted", "must have at least one case")
+        require(slots > 0, "wanted", "must have at least one slot")
         slot_s = number("slot_s", self.slot_s, low=0)
         require(slot_s > 0, "slot_s", "must be positive")
         checked = {
@@ -149,9 +149,17 @@ class Charging:
         for field, value in checked.items():
             object.__setattr__(self, field, value)
         plugged = self.here != AWAY
-        require(not (plugged & self.waits).any(), "waits", "a robot that is there does not wait")
+        require(
+            not (plugged & self.waits).any(),
+            "waits",
+            "must be false for a robot that is at a group (`here`)",
+        )
         swaps = np.append(self.swapped > 0, False)[self.here]
-        require(not swaps.any(), "here", "a robot that swaps waits: nothing can be decided of it")
+        require(
+            not swaps.any(),
+            "here",
+            "must not be a group that swaps batteries: set `waits` for a robot that is swapping",
+        )
 
     @property
     def robots(self) -> int:
@@ -311,29 +319,29 @@ def violations(data: Charging, plan: ChargePlan) -> list[str]:
     """
     groups, robots = len(data.gain), data.robots
     if any(part.shape != (robots,) for part in (plan.group, plan.begin, plan.length)):
-        return ["not one stay for every robot"]
+        return ["group, begin and length must have one value for each robot"]
     stays = plan.group != AWAY
     if ((plan.group < AWAY) | (plan.group >= groups)).any():
-        return ["a group that does not exist"]
+        return ["a robot is sent to a group that does not exist"]
     if ((plan.begin != 0) | (plan.length != 0))[~stays].any():
-        return ["no stay, but a begin or a length"]
+        return ["begin and length must be 0 for a robot without a stay"]
     group, begin, length = plan.group[stays], plan.begin[stays], plan.length[stays]
     found = []
     if ((begin < 0) | (begin + length > data.slots)).any():
-        found.append("a stay beyond the slots")
+        found.append("a stay lies outside the slots")
     limit = np.where(data.swapped[group] > 0, 1, data.longest)
     if ((length < 1) | (length > limit)).any():
-        found.append("a stay that is too short or too long")
+        found.append("a stay is too short or too long")
     here = data.here[stays]
     free = ~data.waits[stays] & (here == AWAY)
     if (begin < data.ready[stays])[free].any():
-        found.append("a stay before the robot is ready")
+        found.append("a stay begins before its robot is ready")
     if ((here != AWAY) & ((here != group) | (begin != 0))).any():
-        found.append("a robot that is there, and goes elsewhere")
+        found.append("a robot that is at a group must stay there, from slot 0")
     if np.isinf(data.way_s[np.flatnonzero(stays), group]).any():
-        found.append("a robot at a group where it may not go")
+        found.append("a robot is sent to a group that it may not use")
     used = np.zeros((groups, data.slots), np.int64)
     np.add.at(used, group, during(begin, begin + length, data.slots))
     if (used > data.places).any():
-        found.append("more robots than places")
+        found.append("a group has more robots than places in a slot")
     return found

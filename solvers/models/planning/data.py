@@ -122,16 +122,18 @@ class Planning:
         require(
             longest <= MOST_VISITS,
             "visits",
-            f"at most {MOST_VISITS} of a station in all",
+            f"a station may have at most {MOST_VISITS} visits, those under way included",
         )
         until = self.order_until[~waits]
         require(
             bool((until < under_way[self.order_station[~waits]]).all()),
             "order_until",
-            "must be a visit under way",
+            "must be a visit under way to the order's station, or -1",
         )
         require(
-            bool((self.order_until[waits] < 0).all()), "order_until", "must be -1 for who waits"
+            bool((self.order_until[waits] < 0).all()),
+            "order_until",
+            "must be -1 for a waiting order",
         )
 
     @property

@@ -79,7 +79,7 @@ def _last_visit(data: Planning, plan: Plan) -> Integers:
 
 def _wrong_pods(data: Planning, plan: Plan) -> Iterator[str]:
     if len(plan.pods) != data.stations:
-        yield "pods: a row per station is missing"
+        yield "pods must have one list per station"
     called = [pod for pods in plan.pods for pod in pods]
     if len(set(called)) < len(called):
         yield "a pod makes two new visits"
@@ -88,7 +88,7 @@ def _wrong_pods(data: Planning, plan: Plan) -> Iterator[str]:
             yield f"station {station}: more than {data.visits} new visits"
         for pod in pods:
             if not np.isfinite(data.cost[pod, station]):
-                yield f"station {station}: pod {pod} cannot come"
+                yield f"station {station}: pod {pod} may not be called there"
 
 
 def _wrong_orders(data: Planning, plan: Plan) -> Iterator[str]:
@@ -98,7 +98,7 @@ def _wrong_orders(data: Planning, plan: Plan) -> Iterator[str]:
     waits = ~is_open[data.line_order]
     placed = plan.order_station[data.line_order] >= 0
     if (waits & (placed != (plan.line_visit >= 0))).any():
-        yield "of a waiting order some lines are served and others not"
+        yield "a waiting order must have all its lines served and a station, or neither"
 
 
 def _wrong_visits(data: Planning, plan: Plan) -> Iterator[str]:
@@ -111,16 +111,19 @@ def _wrong_visits(data: Planning, plan: Plan) -> Iterator[str]:
     for station, new in enumerate(plan.pods):
         pods = [*data.under_way[station], *new]
         if (plan.line_visit[at == station] >= len(pods)).any():
-            yield f"station {station}: a line is served by a visit that is not there"
+            yield f"station {station}: a line is served by a visit that does not exist"
         for visit, pod in enumerate(pods):
             here = (at == station) & (plan.line_visit == visit)
             used = np.bincount(data.line_sku[here], data.line_units[here], data.stock.shape[1])
             if (used > data.stock[pod]).any():
-                yield f"station {station}, visit {visit}: pod {pod} has not enough units"
+                yield f"station {station}, visit {visit}: pod {pod} holds too few units"
             if visit >= len(data.under_way[station]) and not here.any():
-                yield f"station {station}, visit {visit}: serves nothing"
+                yield f"station {station}, visit {visit}: serves no line"
             mine = plan.order_station == station
             if visit + 1 < len(pods):
                 kept = int((mine & (first <= visit) & (last > visit)).sum())
                 if kept > data.kept[station]:
-                    yield f"station {station}, visit {visit}: {kept} orders are kept"
+                    yield (
+                        f"station {station}, visit {visit}: {kept} orders stay open, but only "
+                        f"{data.kept[station]} may"
+                    )

@@ -152,12 +152,18 @@ def test_charging_in_two_goes_is_charging_in_one(
     ("wrong", "says"),
     [
         ({"level": [0.3, -0.1, 0.6, 0.7]}, r"level\[1\]: must be at least 0"),
-        ({"wanted": np.zeros((0, 10))}, "wanted: must have a case"),
-        ({"wanted": np.zeros((1, 0)), "places": np.zeros((1, 0))}, "wanted: must have a slot"),
+        ({"wanted": np.zeros((0, 10))}, "wanted: must have at least one case"),
+        (
+            {"wanted": np.zeros((1, 0)), "places": np.zeros((1, 0))},
+            "wanted: must have at least one slot",
+        ),
         ({"slot_s": 0.0}, "slot_s: must be positive"),
         ({"here": [1, -1, -1, -1]}, r"here\[0\]: must be at most 0"),
-        ({"here": [0, -1, -1, -1], "waits": [1, 0, 0, 0]}, "waits: a robot that is there"),
-        ({"here": [0, -1, -1, -1], "swapped": [0.9]}, "here: a robot that swaps waits"),
+        (
+            {"here": [0, -1, -1, -1], "waits": [1, 0, 0, 0]},
+            "waits: must be false for a robot that is at a group",
+        ),
+        ({"here": [0, -1, -1, -1], "swapped": [0.9]}, "here: must not be a group that swaps"),
         ({"places": np.full((1, 9), 1)}, "places: shape must be"),
         ({"idle": 1.5}, "idle: must be at most 1"),
     ],
@@ -174,15 +180,18 @@ def plan_of(group: list[int], begin: list[int], length: list[int]) -> ChargePlan
 @pytest.mark.parametrize(
     ("plan", "says"),
     [
-        (plan_of([0], [0], [1]), "not one stay for every robot"),
-        (plan_of([1, -1, -1, -1], [0] * 4, [1, 0, 0, 0]), "a group that does not exist"),
-        (plan_of([-1] * 4, [0, 1, 0, 0], [0] * 4), "no stay, but a begin"),
-        (plan_of([0, -1, -1, -1], [9, 0, 0, 0], [2, 0, 0, 0]), "beyond the slots"),
+        (plan_of([0], [0], [1]), "group, begin and length must have one value for each robot"),
+        (
+            plan_of([1, -1, -1, -1], [0] * 4, [1, 0, 0, 0]),
+            "a robot is sent to a group that does not exist",
+        ),
+        (plan_of([-1] * 4, [0, 1, 0, 0], [0] * 4), "must be 0 for a robot without a stay"),
+        (plan_of([0, -1, -1, -1], [9, 0, 0, 0], [2, 0, 0, 0]), "outside the slots"),
         (plan_of([0, -1, -1, -1], [0] * 4, [9, 0, 0, 0]), "too short or too long"),
-        (plan_of([-1, 0, -1, -1], [0] * 4, [0, 1, 0, 0]), "before the robot is ready"),
-        (plan_of([-1, -1, 0, -1], [0, 0, 1, 0], [0, 0, 1, 0]), "goes elsewhere"),
-        (plan_of([-1, -1, -1, 0], [0] * 4, [0, 0, 0, 1]), "where it may not go"),
-        (plan_of([0, -1, 0, -1], [0] * 4, [1, 0, 1, 0]), "more robots than places"),
+        (plan_of([-1, 0, -1, -1], [0] * 4, [0, 1, 0, 0]), "before its robot is ready"),
+        (plan_of([-1, -1, 0, -1], [0, 0, 1, 0], [0, 0, 1, 0]), "must stay there, from slot 0"),
+        (plan_of([-1, -1, -1, 0], [0] * 4, [0, 0, 0, 1]), "that it may not use"),
+        (plan_of([0, -1, 0, -1], [0] * 4, [1, 0, 1, 0]), "a group has more robots than places"),
     ],
 )
 def test_what_is_wrong_with_a_plan_is_said(plan: ChargePlan, says: str) -> None:
@@ -195,7 +204,7 @@ def test_what_is_wrong_with_a_plan_is_said(plan: ChargePlan, says: str) -> None:
 def test_a_start_with_too_many_robots_is_refused() -> None:
     start = plan_of([0, 0, -1, -1], [0] * 4, [1, 1, 0, 0])
     for method in methods():
-        with pytest.raises(ModelError, match="start: more robots than places"):
+        with pytest.raises(ModelError, match="start: a group has more robots than places"):
             solve(fleet(), method, start=start)
 
 

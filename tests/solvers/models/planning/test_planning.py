@@ -139,7 +139,7 @@ def test_a_start_is_kept_unless_it_is_wrong() -> None:
             assert found.objective <= objective(data, start) + 1e-9
     wrong = Plan(((0,),), np.array([-1, 0]), np.array([-1, -1, 0]))
     for method in METHODS:
-        with pytest.raises(ModelError, match="cannot come"):
+        with pytest.raises(ModelError, match="may not be called there"):
             solve(hand_made(), method, start=wrong)
 
 
@@ -175,11 +175,11 @@ def test_objective_by_hand() -> None:
     ("plan", "complaint"),
     [
         (Plan(((1, 1),), np.array([0, 0]), np.array([0, 1, 0])), "two new visits"),
-        (Plan(((0,),), np.array([-1, 0]), np.array([-1, -1, 0])), "cannot come"),
+        (Plan(((0,),), np.array([-1, 0]), np.array([-1, -1, 0])), "may not be called there"),
         (Plan(((1,),), np.array([0, 0]), np.array([0, -1, 0])), "some lines"),
-        (Plan(((1,),), np.array([0, 0]), np.array([0, 2, 0])), "not there"),
+        (Plan(((1,),), np.array([0, 0]), np.array([0, 2, 0])), "does not exist"),
         (Plan(((1,),), np.array([0, 0]), np.array([0, 0, 0])), "enough units"),
-        (Plan(((1,),), np.array([-1, 0]), np.array([-1, -1, 0])), "serves nothing"),
+        (Plan(((1,),), np.array([-1, 0]), np.array([-1, -1, 0])), "serves no line"),
         (Plan(((1, 2, 3),), np.array([0, 0]), np.array([0, 1, 0])), "more than"),
     ],
 )
