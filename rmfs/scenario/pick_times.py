@@ -114,7 +114,7 @@ def measured_s(path: Path) -> NDArray[np.float64]:
     try:
         text = read_bounded(path).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"{path}: not text in UTF-8") from None
+        raise InputError(f"{path}: is not UTF-8 text") from None
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     times: list[float] = []
     try:

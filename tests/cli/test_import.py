@@ -68,7 +68,7 @@ def test_all_is_listed(folder, tmp_path, capsys):
         "readme.md: skipped, as it is not a RAWSim-O file that can be imported",
         "  HeatMode not used: RAWSim-O no longer supports it",
         "  Colour unknown, left out",
-        "  gives no space per unit: drawn",
+        "  has no space per unit: drawn",
         "list.xitem: list of orders and bundles, written as skus/scenarios/list.json, "
         "skus/scenarios/list-orders.csv",
     ):

@@ -134,8 +134,14 @@ class TestFile:
     @pytest.mark.parametrize(
         ("exchanges", "message"),
         [
-            ([{"at_s": 5, "psa": "random"}, {"at_s": 1, "psa": "nearest"}], "in order of time"),
-            ([{"at_s": 5, "psa": "random"}, {"at_share": 1, "psa": "nearest"}], "all need at_s"),
+            (
+                [{"at_s": 5, "psa": "random"}, {"at_s": 1, "psa": "nearest"}],
+                "in chronological order",
+            ),
+            (
+                [{"at_s": 5, "psa": "random"}, {"at_share": 1, "psa": "nearest"}],
+                "all entries must have at_s",
+            ),
         ],
     )
     def test_entries_are_in_order(self, exchanges, message) -> None:

@@ -49,8 +49,8 @@ def framed(text):
 @pytest.mark.parametrize(
     ("data", "why"),
     [
-        (pack({"a": 1}, b"another key", ROBOT), "nobody with the secret"),
-        (pack({"a": 1}, KEY, SERVER), "nobody with the secret"),
+        (pack({"a": 1}, b"another key", ROBOT), "wrong authentication code"),
+        (pack({"a": 1}, KEY, SERVER), "wrong authentication code"),
         ((LARGEST + 1).to_bytes(4, "big"), "a frame has 65537 bytes"),
         (b"GET / HTTP/1.1\r\n\r\n", "a frame has"),
         (framed(b"{]"), "not JSON"),

@@ -75,7 +75,7 @@ def test_tags(plan, tmp_path):
 
 def test_secrets(tmp_path, monkeypatch):
     monkeypatch.delenv(settings.SECRET, raising=False)
-    with pytest.raises(InputError, match="RMFS_SECRET: the secret"):
+    with pytest.raises(InputError, match="RMFS_SECRET: must hold the secret"):
         settings.secret(None)
     monkeypatch.setenv(settings.SECRET, " from outside \n")
     assert settings.secret(None) == b"from outside"
@@ -106,10 +106,10 @@ def lab(monkeypatch, tmp_path):
         (["--robots", "tcp://127.0.0.1:0", "--secret", "none"], "--secret none: cannot be read"),
         (
             ["--robots", "tcp://127.0.0.1:0", "--set", "controllers.pp.name=far"],
-            "need time-windows",
+            "require time-windows",
         ),
         (["--robots", "tcp://192.0.2.1:7"], "cannot listen there"),
-        (["--robots", "emulated", "--past-failure"], "there is nothing to resume"),
+        (["--robots", "emulated", "--past-failure"], "whose room ends with the server"),
     ],
 )
 def test_wrong_input_ends_in_one_line(lab, capsys, arguments, why):

@@ -215,7 +215,10 @@ def test_an_installed_one_is_found_by_its_name(folder: Path, monkeypatch) -> Non
             '(Column("Pods used", "int64", "", ""),)',
             "must consist of lower-case letters, digits and _",
         ),
-        ('(Column("own", "int", "", ""),)', "type 'int'; valid: int64, Int64, float64, str, bool"),
+        (
+            '(Column("own", "int", "", ""),)',
+            "type 'int' is invalid; valid: int64, Int64, float64, str, bool",
+        ),
         ('(Column("x", "int64", "", "", better="high"),)', "better must be more, less or neither"),
     ],
 )

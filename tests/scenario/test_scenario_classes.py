@@ -79,7 +79,10 @@ def test_a_file_says_the_class_and_with_it_the_offset(tmp_path, skus):
             ("express", "expres"),
             "line 4: priority expres is not a class; valid: express, prime, ord",
         ),
-        (("2,1,500,prime", "2,1,500,express"), "line 3: priority differs from the line before"),
+        (
+            ("2,1,500,prime", "2,1,500,express"),
+            "line 3: priority differs from that of the previous line",
+        ),
     ],
 )
 def test_wrong_classes_in_files_are_refused_in_one_line(tmp_path, skus, wrong, told):

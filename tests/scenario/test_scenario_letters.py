@@ -87,9 +87,9 @@ def test_words_do_not_look_at_stock(tmp_path: Path):
 
 
 def test_words_and_letters_need_each_other(tmp_path: Path):
-    with pytest.raises(InputError, match=r'orders: content = "words" requires skus.words'):
+    with pytest.raises(InputError, match=r'orders: content = "words" and skus.words must be used'):
         scenario(orders={"content": "words"})
-    with pytest.raises(InputError, match=r'orders: content = "words" requires skus.words'):
+    with pytest.raises(InputError, match=r'orders: content = "words" and skus.words must be used'):
         letters(tmp_path, orders={})
 
 
@@ -109,9 +109,9 @@ BROKEN = {
     "": "no word",
     "\n \n": "no word",
     "a b\n": "line 1: 'a b' must consist of letters only",
-    "ab1\nc-d\n": "line 1: 'ab1' must consist of letters only; line 2: 'c-d' has",
+    "ab1\nc-d\n": "line 1: 'ab1' must consist of letters only; line 2: 'c-d' must",
     "a" * 65: "line 1: is longer than 64 letters",
-    "a" * 1000: "line 1: too long",
+    "a" * 1000: "line 1: is too long",
     b"\xff\xfe\x00": "is not UTF-8 text",
     b"ab\x00": "must consist of letters only",
 }

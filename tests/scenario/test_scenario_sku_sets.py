@@ -66,7 +66,7 @@ WRONG = [
     ({"space_per_unit": [0, 1]}, "space_per_unit.0: Input should be greater than 0"),
     ({"bundle_units": [1, 1.5]}, "bundle_units.1: Input should be a valid integer"),
     ({"names": ["a"]}, "names: 1 values, expected 2"),
-    ({"digest": "0"}, "digest: is "),
+    ({"digest": "0"}, "digest: does not match the content"),
     (
         {"affinity": {"share": 1, "default_weight": 0, "first": [7], "second": [1], "weight": [1]}},
         "affinity.first: SKU 7 is not among ids",

@@ -123,9 +123,9 @@ def test_another_file_than_the_published_one_is_refused(tmp_path: Path, few_skus
     ],
 )
 def test_what_depends_on_the_run_cannot_be_exported(tmp_path: Path, tables):
-    with pytest.raises(InputError, match="test: demand: its orders depend on what happens in a"):
+    with pytest.raises(InputError, match="test: demand: orders that depend on what happens in a"):
         export_stream(scenario(**tables), "orders", tmp_path / "a.csv", SITE)
-    with pytest.raises(InputError, match="test: replenishment: its bundles depend"):
+    with pytest.raises(InputError, match="test: replenishment: bundles that depend"):
         export_stream(scenario(), "bundles", tmp_path / "a.csv", SITE)
     assert list(tmp_path.iterdir()) == []
 
@@ -219,14 +219,14 @@ WRONG = {
     HEAD + "nan,A,0,1,\n": "line 2: time must be a number (given: 'nan')",
     HEAD + "inf,A,0,1,\n": "line 2: time must be a number (given: 'inf')",
     HEAD + "1e99,A,0,1,\n": "line 2: time must be from 0",
-    HEAD + "5,A,0,1,\n3,B,0,1,\n": "line 3: time 3 is before that of the order before",
+    HEAD + "5,A,0,1,\n3,B,0,1,\n": "line 3: time 3 is earlier than that of the previous order",
     HEAD + "5,A,0,1,4\n": "line 2: due is earlier than time",
     HEAD + "5,A,0,1,\n6,A,1,1,\n": "line 3: time differs from that of the previous line of order A",
     HEAD + "5,A,0,1,9\n5,A,1,1,\n": "line 3: due differs from that of the previous line of order A",
     HEAD + "5,A,0,1,\n5,A,0,1,\n": "line 3: sku 0 occurs twice in order A",
     HEAD + "5,,0,1,\n": "line 2: order is empty",
     HEAD + f"5,{'A' * 201},0,1,\n": "line 2: order is longer than 200 characters",
-    HEAD + "5,A,0,1,\n5,B,0,1,\n5,A,1,1,\n": "line 4: order is one that ended before",
+    HEAD + "5,A,0,1,\n5,B,0,1,\n5,A,1,1,\n": "line 4: order occurs again after another order",
     HEAD + '5,"A,0,1,\n': "line 2: unexpected end of data",
     HEAD + "5,A\0,0,1,\n": "line 2: is not text: contains a zero byte",
     HEAD + "5,A,0,1,\n" + "x" * 5000: "line 3: longer than 4096 bytes",
@@ -256,7 +256,8 @@ def test_all_wrong_lines_are_counted_and_ten_are_shown(tmp_path: Path, few_skus:
 
 BUNDLES_WRONG = {
     "time,sku\n": "line 1: column quantity is missing",
-    "time,sku,quantity\n5,0,1\n4,0,1\n": "line 3: time 4 is before that of the bundle before",
+    "time,sku,quantity\n5,0,1\n4,0,1\n": "line 3: time 4 is earlier than that of the previous "
+    "bundle",
     "time,sku,quantity,due\n5,0,1,9\n": "line 2: due must be empty: bundles have no due time",
     "time,sku,quantity\n5,4,21\n": "line 2: quantity 21 takes 105 space units, but no pod holds "
     "more than 100",

@@ -87,7 +87,7 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
     try:
         text = read_bounded(path).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"{path}: not text in UTF-8") from None
+        raise InputError(f"{path}: is not UTF-8 text") from None
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
     try:
         for fields in reader:

@@ -122,7 +122,7 @@ def _read_words(path: Path) -> tuple[str, ...]:
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError:
-        raise InputError(f"{path}: not text in UTF-8") from None
+        raise InputError(f"{path}: is not UTF-8 text") from None
     if not words:
         problems.add("no word")
     problems.stop_if_any()

@@ -176,9 +176,9 @@ def test_objective_by_hand() -> None:
     [
         (Plan(((1, 1),), np.array([0, 0]), np.array([0, 1, 0])), "two new visits"),
         (Plan(((0,),), np.array([-1, 0]), np.array([-1, -1, 0])), "may not be called there"),
-        (Plan(((1,),), np.array([0, 0]), np.array([0, -1, 0])), "some lines"),
+        (Plan(((1,),), np.array([0, 0]), np.array([0, -1, 0])), "all its lines served"),
         (Plan(((1,),), np.array([0, 0]), np.array([0, 2, 0])), "does not exist"),
-        (Plan(((1,),), np.array([0, 0]), np.array([0, 0, 0])), "enough units"),
+        (Plan(((1,),), np.array([0, 0]), np.array([0, 0, 0])), "too few units"),
         (Plan(((1,),), np.array([-1, 0]), np.array([-1, -1, 0])), "serves no line"),
         (Plan(((1, 2, 3),), np.array([0, 0]), np.array([0, 1, 0])), "more than"),
     ],
