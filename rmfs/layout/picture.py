@@ -292,7 +292,7 @@ def _legend(layout: Layout, ax: Axes) -> None:
         mark("replenishment station", colours.REPLENISHMENT_STATION, "o"),
         mark("robot", colours.ROBOT, "o"),
         mark("pod", colours.STORAGE, "s"),
-        mark("free storage place", colours.FREE_STORAGE, "s"),
+        mark("free storage location", colours.FREE_STORAGE, "s"),
         Line2D([], [], color=colours.QUEUE_ZONE, linestyle="dotted", label="queue zone"),
         Line2D([], [], color=colours.HALLWAY, linestyle="dashed", label="hallway"),
     ]

@@ -128,8 +128,7 @@ WRONG = {
     "2026-03-01T08:00:00 (given: '2026-13-01')",
     "2026-03-01T08:00,A,0,1,\n5,B,0,1,\n": "line 3: time must be a time such as "
     "2026-03-01T08:00:00, as in earlier lines (given: '5')",
-    "5,A,0,1,\n2026-03-01T08:00,B,0,1,\n": "line 3: time must be a number of s, as in earlier lines "
-    "(given",
+    "5,A,0,1,\n2026-03-01T08:00,B,0,1,\n": "line 3: time must be a number of s, as in earlier",
     "2026-03-01T08:00,A,0,1,90\n": "line 2: due must be a time such as",
     "2026-03-01T08:00Z,A,0,1,\n2026-03-01T09:00,B,0,1,\n": "line 3: time must have a time zone, as "
     "2026-03-01T00:00:00+00:00 has (given: 2026-03-01T09:00)",

@@ -54,7 +54,7 @@ def _empty(layout: Layout, lost: Mask) -> Iterator[Violation]:
 
 
 def _outside(layout: Layout, fine: Mask) -> Iterator[list[str]]:
-    """Yield the names of the storage places, stations and elevators that are not fine."""
+    """Yield the names of the storage locations, stations and elevators that are not fine."""
     yield [waypoint_label(layout, int(v)) for v in np.flatnonzero(layout.is_storage & ~fine)]
     yield [
         station_label(layout, number)
@@ -70,10 +70,10 @@ def _outside(layout: Layout, fine: Mask) -> Iterator[list[str]]:
 
 
 def _loaded(layout: Layout, lost: Mask) -> Iterator[Violation]:
-    """Check the paths of pods: from every storage place to every station and back.
+    """Check the paths of pods: from every storage location to every station and back.
 
     Elevators need no separate check: where an empty robot reaches one, a loaded robot reaches it
-    from the last storage place on that path, and pods that must ride are checked here.
+    from the last storage location on that path, and pods that must ride are checked here.
     """
     tails = edge_sources(layout)
     reach = Reach(layout, ~layout.is_storage)
@@ -99,7 +99,7 @@ def _loaded(layout: Layout, lost: Mask) -> Iterator[Violation]:
 def _pod_ways(
     layout: Layout, bad: Mask, places: Mask, station: str, words: tuple[str, str]
 ) -> Iterator[Violation]:
-    """Yield the storage places without a path, or the station if that affects most of them."""
+    """Yield the storage locations without a path, or the station if that affects most of them."""
     verb, preposition = words
     if 2 * bad.sum() > places.sum():
         message = (

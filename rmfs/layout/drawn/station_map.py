@@ -60,7 +60,7 @@ def read_station_map(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()
 
 
 def _floor(rows: list[str], storage: str) -> Drawing:
-    """Return the aisles and storage places of a map; shelves need an adjacent aisle."""
+    """Return the aisles and storage locations of a map; shelves need an adjacent aisle."""
     signs = np.array([list(row) for row in rows])
     shelf = np.isin(signs, list(storage))
     free = ~shelf & ~np.isin(signs, list(BLOCKED))

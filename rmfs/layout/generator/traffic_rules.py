@@ -76,7 +76,7 @@ class TrafficRules:
         return self._parameters.two_directional_aisles
 
     def _from_ring(self, tile: Tile) -> set[Direction]:
-        """Follow the ring, or turn into storage places, lanes and aisles that run that way."""
+        """Follow the ring, or turn into storage locations, lanes and aisles that run that way."""
         flows = {self._along_row(tile), self._along_column(tile)}
         storage = {d for d in Direction if self._kind(d.step(tile)) == Kind.STORAGE}
         return flows | storage
