@@ -57,18 +57,18 @@ def cell(name: str, value: object, row: int = 5) -> Callable[[Frame], Frame]:
 
 MOTION: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
     "a robot that is not": (cell("robot", 10), "row 5: robot must be from 0 to 9 (given: 10)"),
-    "a place that is not": (cell("to_wp", 10**6), "to_wp 1000000 cannot be"),
-    "a negative place": (cell("from_wp", -1), "from_wp -1 cannot be"),
+    "a place that is not": (cell("to_wp", 10**6), "to_wp must be from"),
+    "a negative place": (cell("from_wp", -1), "from_wp must be from"),
     "a kind that is not": (cell("kind", 7), "kind must be from 0 to 6 (given: 7)"),
     "a pod that is not": (cell("pod", 100), "pod must be from -1 to 99 (given: 100)"),
-    "a time before the start": (cell("t0_us", -1), "t0_us -1 cannot be"),
+    "a time before the start": (cell("t0_us", -1), "t0_us must be from"),
     "an end before its begin": (cell("t1_us", 0), "ends (t1_us) before it starts"),
     "no heading": (cell("heading0_rad", float("nan")), "heading0_rad: a value is missing"),
-    "a heading without end": (cell("heading1_rad", float("inf")), "heading1_rad inf cannot be"),
-    "a gap": (lambda frame: frame.drop(index=5), "does not start (t0_us) where the one before"),
+    "a heading without end": (cell("heading1_rad", float("inf")), "heading1_rad must be from"),
+    "a gap": (lambda frame: frame.drop(index=5), "t0_us must equal t1_us of the robot"),
     "rows turned round": (lambda frame: frame[::-1], "rows are not sorted by robot"),
-    "a robot left out": (lambda frame: frame[frame["robot"] != 3], "there are no rows of robot 3"),
-    "no rows": (lambda frame: frame[:0], "there are no rows of robot 0"),
+    "a robot left out": (lambda frame: frame[frame["robot"] != 3], "there are no rows for robot 3"),
+    "no rows": (lambda frame: frame[:0], "there are no rows for robot 0"),
     "words for numbers": (lambda frame: frame.astype({"robot": str}), "robot must hold whole num"),
     "a missing number": (
         lambda frame: frame.assign(pod=frame["pod"].astype("Int32").mask(frame["t0_us"] > 0)),
@@ -78,15 +78,15 @@ MOTION: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
 }
 EVENTS: dict[str, tuple[Callable[[Frame], Frame | None], str]] = {
     "a kind that is not": (cell("kind", "explosion"), "row 5: kind must be one of stock, task"),
-    "a time before the start": (cell("time_us", -1), "time_us -1 cannot be"),
-    "a time after the end": (cell("time_us", 10**12), "time_us 1000000000000 cannot be"),
+    "a time before the start": (cell("time_us", -1), "time_us must be from"),
+    "a time after the end": (cell("time_us", 10**12), "time_us must be from"),
     "a time before the row before": (
         lambda frame: frame.assign(time_us=frame["time_us"].to_numpy()[::-1]),
         "time_us is less than in the row before",
     ),
     "a station that is not": (cell("station", 99), "station must be from -1 to 3 (given: 99)"),
     "a SKU that is not": (cell("sku", 100), "sku must be from -1 to 99 (given: 100)"),
-    "units below none": (cell("units", -4), "units -4 cannot be"),
+    "units below none": (cell("units", -4), "units must be from"),
     "numbers for words": (lambda frame: frame.assign(kind=1), "kind must hold words"),
 }
 FILES = {"trace.parquet": MOTION, "events.parquet": EVENTS}
