@@ -149,7 +149,7 @@ class TestWaitingForEachOther:
         assert message.startswith("controllers: ")
         assert "roa same-pod waits for the decision of rps" in message
         assert f"rps {rps} for that of roa" in message
-        assert "choose roa random or choose rps emptiest" in message
+        assert "for roa random; or for rps emptiest" in message
         assert "\n" not in message
 
     @pytest.mark.parametrize("rps", ["nearest", "reactive"])

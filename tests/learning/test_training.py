@@ -102,9 +102,9 @@ def test_the_command_writes_a_file_that_runs(
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        ({"problems": ["sa"]}, "problem sa: valid: poa, pps, psa, ta"),
+        ({"problems": ["sa"]}, "problem sa: must be one of poa, pps, psa, ta"),
         ({"objective": {"profit": 1.0}}, "objective profit: is not a column of the footprint"),
-        ({"seeds": ()}, "needs a problem, an objective and a seed"),
+        ({"seeds": ()}, "at least one problem, one objective and one seed"),
     ],
 )
 def test_wrong_tasks_are_refused(given: dict[str, Any], told: str) -> None:
