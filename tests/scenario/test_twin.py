@@ -198,7 +198,7 @@ def test_the_command(tmp_path, capsys, monkeypatch):
     capsys.readouterr()
     assert main(["scenario", "twin", "few.csv", "--out", "few.toml"]) == 2
     told = capsys.readouterr().err
-    assert "few.csv: the orders are too few" in told
+    assert "few.csv: there are too few orders for a fit" in told
     assert told.count("\n") == 1
     assert not (tmp_path / "few.toml").exists()
 
@@ -218,7 +218,7 @@ def test_popularity_that_is_too_uneven_is_kept_as_it_is(tmp_path, capsys, monkey
     monkeypatch.chdir(tmp_path)
     uneven(tmp_path / "o.csv")
     assert main(["scenario", "twin", "o.csv"]) == 2
-    assert "--listed keeps the popularity of each" in capsys.readouterr().err
+    assert "--listed, which keeps the popularity of each" in capsys.readouterr().err
     assert main(["scenario", "twin", "o.csv", "--listed"]) == 0
     text = (tmp_path / "twin-skus.json").read_text()
     assert "S1" not in text  # no name of the file

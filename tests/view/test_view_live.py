@@ -239,7 +239,7 @@ def test_a_run_that_waits_for_its_page_begins_when_that_asks() -> None:
 def test_a_run_that_never_began_is_told() -> None:
     live = LiveRun(NAMES, title="test")
     live.close("the run was aborted")
-    with pytest.raises(InputError, match="given up"):
+    with pytest.raises(InputError, match="aborted"):
         live.scene()
 
 
