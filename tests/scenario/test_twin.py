@@ -172,7 +172,7 @@ def test_rates_of_a_week(tmp_path):
     twin = fit_twin(orders, "twin", weekly=True)
     profile = twin.scenario.demand.profile
     assert (profile.cycle_s, len(profile.weights)) == (604800.0, 168)
-    with pytest.raises(InputError, match="need orders of 7 days"):
+    with pytest.raises(InputError, match="needs orders of at least 7 days"):
         fit_twin(exported(truth(1), tmp_path / "o.csv", 1), "twin", weekly=True)
 
 

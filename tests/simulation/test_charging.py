@@ -177,7 +177,7 @@ def test_impossible_charges_say_why():
     robot, charger = decision.view.robots[0], decision.view.recovery_stations[0].index
     for wrong, why in [
         (Charge(robot, 0, 0.5), "is not an energy station"),
-        (Charge(robot, charger, 1.5), "not a level"),
+        (Charge(robot, charger, 1.5), "must be a share of the capacity"),
         (Unplug(robot), "is not at a charger"),
     ]:
         with pytest.raises(ImpossibleError, match=why):

@@ -216,7 +216,10 @@ def test_a_design_runs_it_on_dask(design, tmp_path):
     [
         (("QualityCheck", "Nothing"), "other_stations.check.kind: .* has no class Nothing"),
         (("quality_check.py", "missing.py"), "other_stations.check.kind: .* no file"),
-        (("stations.check", "stations.other"), "has the name 'check': use the table other_stations.check"),
+        (
+            ("stations.check", "stations.other"),
+            "has the name 'check': use the table other_stations.check",
+        ),
         (("every = 3", "every = 0"), "other_stations.check.parameters: every"),
         (("every = 3", "evry = 3"), "unknown key evry; did you mean every"),
         (("north = 1", "north = 9"), "north side has room for"),

@@ -199,9 +199,9 @@ def test_what_is_not_possible_is_refused_and_the_question_stands() -> None:
     for wrong, reason in [
         (AssignOrder(order, 99), "there is no pick station 99"),
         (AssignOrder(order, "first"), "not the number of a pick station"),
-        ((order, 0), "takes AssignOrder, AssignLines, QueueOrder"),
-        (Park(robot, 3), "takes AssignOrder"),
-        (None, "takes AssignOrder"),
+        ((order, 0), "expected AssignOrder, AssignLines, QueueOrder"),
+        (Park(robot, 3), "expected AssignOrder"),
+        (None, "expected AssignOrder"),
     ]:
         with pytest.raises(ImpossibleError, match=reason):
             decision.answer(wrong)
