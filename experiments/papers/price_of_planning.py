@@ -1,11 +1,10 @@
 """The cost of planning time: units per hour over the time that a path plan takes.
 
 The design `price-of-planning` varies how long the plan of a trip takes, on two layouts with five
-fleets: a constant time, with one planner for all robots or one for each; the work of the searches,
-at the rates of planners 1,000 and 10,000 times slower than ours; and the time at which robots ask
-for plans. The study publishes the change of units per hour compared with plans that take
-no time, paired by seed, and for each fleet the time from which planning costs throughput. It takes
-about 0.2 CPU hours.
+fleets. All robots have one planner. The study publishes the change of units per hour compared with
+plans that take no time, paired by seed, and for each fleet the time from which planning costs
+throughput. A design of your own (`--design`) can have other modes and invocations, and a planner
+for each robot (labels that end in ", each").
 """
 
 from __future__ import annotations
@@ -107,7 +106,7 @@ def thresholds(frame: pd.DataFrame) -> Table:
     for fleet in frame[FLEET].unique():
         units = interval(wide(frame, fleet)[INSTANT])
         plans = wide(frame, fleet, "plans")[INSTANT] / wide(frame, fleet, "duration_s")[INSTANT]
-        one, each = begins(frame, fleet, each=False), begins(frame, fleet, each=True)
+        one = begins(frame, fleet, each=False)
         rows[fleet] = {
             ("units per hour", "mean"): units.mean,
             ("units per hour", HALF): units.half_width,
@@ -115,22 +114,22 @@ def thresholds(frame: pd.DataFrame) -> Table:
             ("busy at, s", ""): 1 / float(plans.mean()),
             ("no loss shown up to, s", ""): one[1],
             ("loss from, s", ""): one[0],
-            ("each: no loss shown up to, s", ""): each[1],
-            ("each: loss from, s", ""): each[0],
         }
+        if frame[PLANNING].str.endswith(", each").any():
+            each = begins(frame, fleet, each=True)
+            rows[fleet] |= {
+                ("each: no loss shown up to, s", ""): each[1],
+                ("each: loss from, s", ""): each[0],
+            }
     decimals = {("units per hour", part): 0 for part in ("mean", HALF)}
-    decimals |= {("plans per hour", ""): 0, ("busy at, s", ""): 1}
-    decimals |= {
-        (f"{planners}{what}, s", ""): 1
-        for planners in ("", "each: ")
-        for what in ("no loss shown up to", "loss from")
-    }
+    decimals |= {("plans per hour", ""): 0}
+    decimals |= {column: 1 for row in rows.values() for column in row if ", s" in column[0]}
     caption = (
         "Where planning begins to cost. Units and plans per hour are those of plans that take no "
         "time; busy at: time of a plan at which one planner would be busy all the time with as "
         "many plans. Loss from: shortest constant time of a plan of those studied from which on "
         "units per hour are significantly fewer (95% confidence interval of the paired change "
-        "below zero), with one planner for all robots or one for each."
+        "below zero), with one planner for all robots; each: with one for each robot."
     )
     return Table(rows_frame(rows, "fleet"), decimals, caption)
 
@@ -144,6 +143,8 @@ def picture(study: Study) -> None:
             found = changes(study.frame, fleet)
             for style, each in (("-", False), (":", True)):
                 own = [one for one in found if one.endswith(", each") == each and seconds(one) > 0]
+                if not own:
+                    continue
                 points = sorted((seconds(one), 100 + found[one].mean) for one in own)
                 label = None if each else fleet
                 xs, ys = zip(*points, strict=True)
