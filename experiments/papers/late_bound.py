@@ -1,0 +1,65 @@
+"""A lower bound on the number of late orders, whatever is decided and known.
+
+An order is on time only if all its units are handled between its arrival and its due time. Stations
+handle units one after the other, so the orders that arrive and are due within an interval cannot
+need more work than all stations can do in it. The bound assumes that any pod is at any station as
+soon as it is wanted, that everything is in stock, and that orders can be split over stations.
+"""
+
+from __future__ import annotations
+
+from math import ceil
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import linprog
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_HAIR = 1e-6
+
+
+def fewest_late(
+    released_s: NDArray[np.float64],
+    due_s: NDArray[np.float64],
+    work_s: NDArray[np.float64],
+    stations: int,
+) -> int:
+    """Return how many of N orders are late at least.
+
+    The number of orders on time is at most the optimum of a linear programme: for each interval
+    from an arrival to a due time, the work of the orders on time within it is at most the length of
+    the interval times the number of stations.
+
+    Parameters
+    ----------
+    released_s, due_s
+        Arrival and due time of each order, shape (N,), in s.
+    work_s
+        Time for which each order occupies stations, shape (N,), in s.
+    stations
+        Number of stations.
+
+    Raises
+    ------
+    RuntimeError
+        If the linear programme is not solved.
+    """
+    count = len(released_s)
+    if not count:
+        return 0
+    rows, limits = [], []
+    for start_s in np.unique(released_s):
+        for end_s in np.unique(due_s[due_s >= start_s]):
+            inside = (released_s >= start_s) & (due_s <= end_s)
+            limit = stations * (end_s - start_s)
+            if (work_s * inside).sum() > limit:
+                rows.append(work_s * inside)
+                limits.append(limit)
+    if not rows:
+        return 0
+    solved = linprog(-np.ones(count), A_ub=np.array(rows), b_ub=limits, bounds=(0.0, 1.0))
+    if not solved.success:
+        raise RuntimeError(f"bound on late orders: {solved.message}")
+    return max(ceil(count + float(solved.fun) - _HAIR), 0)
