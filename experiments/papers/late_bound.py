@@ -60,6 +60,6 @@ def fewest_late(
     if not rows:
         return 0
     solved = linprog(-np.ones(count), A_ub=np.array(rows), b_ub=limits, bounds=(0.0, 1.0))
-    if not solved.success:
+    if not solved.success or solved.fun is None:
         raise RuntimeError(f"bound on late orders: {solved.message}")
-    return max(ceil(count + float(solved.fun) - _HAIR), 0)
+    return max(ceil(count + solved.fun - _HAIR), 0)
