@@ -78,7 +78,7 @@ HEAD = "time,order,sku,quantity,due\n"
 BROKEN_ROWS = {
     "negative quantity": (HEAD + "1,a,0,-2,\n", "line 2: quantity must be from 1 to"),
     "unknown SKU": (HEAD + "1,a,4711,2,\n", "line 2: sku 4711 is unknown"),
-    "times out of order": (HEAD + "9,a,0,2,\n3,b,0,2,\n", "line 3: time 3 is before"),
+    "times out of order": (HEAD + "9,a,0,2,\n3,b,0,2,\n", "line 3: time 3 is earlier"),
     "empty": ("", "empty; line 1 must hold the names of the columns"),
     "truncated": (HEAD + "1,a,0", "line 2: "),
     "binary": (bytes(range(256)), "not text"),

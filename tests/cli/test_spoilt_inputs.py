@@ -163,7 +163,7 @@ def test_run_folders_without_a_key(command: str, key: str, run_folder: Path, cap
     del told[key]
     Path("run/run.json").write_text(json.dumps(told))
     options = ["--export", "page.html"] if command == "view" else []
-    assert f"{key} is missing" in refused([command, "run", *options], capsys, "run")
+    assert f"missing: {key}" in refused([command, "run", *options], capsys, "run")
 
 
 def test_export_onto_a_folder(run_folder: Path, capsys) -> None:

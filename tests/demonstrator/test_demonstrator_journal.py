@@ -39,8 +39,11 @@ def test_a_line_cut_off_by_the_kill_is_dropped(tmp_path):
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("", "another demonstration"),
-        ('{"format": "rmfs-journal/1", "settings": {"seed": 2}}\n', "another demonstration"),
+        ("", "is not a journal of this demonstration"),
+        (
+            '{"format": "rmfs-journal/1", "settings": {"seed": 2}}\n',
+            "is not a journal of this demonstration",
+        ),
         ('{"format": "rmfs-journal/1", "settings": {"seed": 1}}\n{}\n', "line 2 is damaged"),
     ],
 )

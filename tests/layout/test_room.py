@@ -47,9 +47,9 @@ def test_force_runs_it_all_the_same(
     monkeypatch.setattr(room, "available", lambda: 1e5)
     assert main([*RUN, *SHORT]) == 2
     assert main([*RUN, *SHORT, "--force"]) == 0
-    with pytest.raises(InputError, match="would take about"):
+    with pytest.raises(InputError, match="would need about"):
         rmfs.simulate("small", "small", set={"scenario.duration_s": 10})
-    with pytest.raises(InputError, match="would take about"), room.forced(False):
+    with pytest.raises(InputError, match="would need about"), room.forced(False):
         layout.load("small")
     with room.forced():
         layout.load("small")

@@ -100,7 +100,7 @@ def test_gymnasium_makes_it() -> None:
 
 
 def test_what_is_wrong_is_told_at_once() -> None:
-    with pytest.raises(InputError, match="problem pp: valid"):
+    with pytest.raises(InputError, match="problem pp: must be one of"):
         DecisionVectorEnv(2, problems=["pp"])
     with pytest.raises(InputError, match="num_envs 2, workers 3"):
         DecisionVectorEnv(2, workers=3, **GIVEN)

@@ -97,5 +97,5 @@ def test_export_from_the_command_line(tmp_path: Path):
     )
     stream = f"scenario.replenishment={{mode='stream', file='{bundles}'}}"
     assert "bundles, digest" in run("check", "default", "--set", stream)
-    with pytest.raises(InputError, match="default: demand: its orders depend"):
+    with pytest.raises(InputError, match="default: demand: orders that depend"):
         run("export", "default", tmp_path / "none.csv")

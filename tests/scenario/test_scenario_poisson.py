@@ -226,7 +226,7 @@ def test_affinity_to_nobody_left_falls_back_to_popularity():
 
 def test_a_rate_without_end_is_refused(skus: SkuSet):
     steps = {"kind": "steps", "weights": [1, 0], "starts_s": [0, 1e-6]}
-    with pytest.raises(InputError, match="per h is too large"):
+    with pytest.raises(InputError, match="per h is too high"):
         orders(skus, profile=steps)
     with pytest.raises(InputError, match="at most 1e"):
         orders(skus, orders_per_h=1e15)

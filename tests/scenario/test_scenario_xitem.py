@@ -18,7 +18,7 @@ BROKEN_LISTS = [
     ('Count="2"', f'Count="{"9" * 5000}"', "order 1: quantity must be a number"),
     ('ItemDescriptionID="4"', 'ItemDescriptionID="5"', "order 1: sku 5 is unknown"),
     ('ItemDescriptionID="4"', 'ItemDescriptionID="9"', "order 1: sku 9 occurs twice in order 1"),
-    ('TimeStamp="3.25"', 'TimeStamp="1"', "order 2: time 1 is before that of the order before"),
+    ('TimeStamp="3.25"', 'TimeStamp="1"', "order 2: time 1 is earlier than that of the previous"),
     ('TimeStamp="3.25"', "", "order 2: time must be a number of s, or a time such as"),
     ('<Position ItemDescriptionID="9" Count="1" />', "", "order 2: sku must be a number (empty)"),
     ('Weight="2"', 'Weight="0"', "ItemDescription 9: Weight must be a positive number"),

@@ -176,9 +176,7 @@ class Link:
         assert self._wire is not None
         for welcome in self._unpacker.feed(data, self._secret, protocol.WELCOME):
             if welcome.get("type") != "welcome" or welcome.get("version") != protocol.VERSION:
-                raise ProtocolError(
-                    f"expected a welcome of version {protocol.VERSION} (received: {welcome})"
-                )
+                raise ProtocolError(f"expected welcome, version {protocol.VERSION}: {welcome}")
             theirs, own = protocol.text_of(welcome, "nonce"), secrets.token_hex(16)
             hello = {
                 "type": "hello",

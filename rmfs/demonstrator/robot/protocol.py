@@ -90,9 +90,7 @@ def text_of(message: Message, name: str, longest: int = 64) -> str:
     """
     value = message.get(name)
     if not isinstance(value, str) or not 0 < len(value) <= longest:
-        raise ProtocolError(
-            f"{name} must be a text of 1 to {longest} characters (given: {value!r})"
-        )
+        raise ProtocolError(f"{name} must have 1 to {longest} characters (given: {value!r})")
     return value
 
 

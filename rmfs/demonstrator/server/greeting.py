@@ -57,7 +57,7 @@ class Greeting:
         """
         for hello in self._unpacker.feed(data, self._secret, HELLO + self._nonce.encode()):
             if hello.get("type") != "hello" or hello.get("version") != VERSION:
-                raise ProtocolError(f"expected a hello of version {VERSION} (received: {hello})")
+                raise ProtocolError(f"expected hello, version {VERSION}: {hello}")
             key = session_key(self._secret, self._nonce, text_of(hello, "nonce"))
             return Guest(text_of(hello, "robot"), key, bytes(self._unpacker.rest))
         return None
