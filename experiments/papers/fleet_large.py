@@ -58,7 +58,10 @@ def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
 
 
 def bounds(found: Mapping[int, float], limit: float) -> Table:
-    """Return the bounds of fleets from one robot to the smallest fleet with the highest bound."""
+    """Return a table of the bound on units per hour by fleet size.
+
+    The fleets range from one robot to the smallest fleet that reaches the highest bound.
+    """
     highest = max(found.values())
     fleets = [robots for robots, bound in found.items() if bound < highest * (1 - 1e-6)]
     fleets.append(min(set(found) - set(fleets)))

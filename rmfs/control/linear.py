@@ -37,8 +37,9 @@ STARTS: dict[str, Weights] = {
 def default_weights(kind: str) -> Weights:
     """Return the initial weights of the scaled features of a kind of question.
 
-    These are the weights in `STARTS` or, if there are none, those in
-    `rmfs.control.features.RANKINGS`, multiplied by the scales. Features without a weight get 0.
+    If `STARTS` has weights for this kind, these are returned. Otherwise, each weight in
+    `rmfs.control.features.RANKINGS` is multiplied by the scale of its feature. Features without a
+    weight get 0.
     """
     if kind in STARTS:
         return {name: STARTS[kind].get(name, 0.0) for name in COLUMNS[kind]}

@@ -25,8 +25,9 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
     Parameters
     ----------
     path
-        The file NAME.toml. Those of the other files that the scenario needs are written beside
-        it: NAME-skus.json, NAME-words.txt, NAME-orders.csv, NAME-bundles.csv, NAME-times.csv.
+        The file NAME.toml. Of the following files, only those that the scenario needs are written,
+        beside it: NAME-skus.json, NAME-words.txt, NAME-orders.csv, NAME-bundles.csv,
+        NAME-times.csv.
 
     Returns
     -------

@@ -3,7 +3,7 @@
 A split order needs a slot of the wall for each of its totes but one, or, if its totes share a slot,
 a single one. The number of totes is known only when the last line has a station, so each line
 without a station counts as a separate tote. An order that is split within this capacity therefore
-never finds the wall full, and no pick station is blocked.
+never finds the wall full, and no pick station is blocked because of the wall.
 
 If the capacity does not suffice for all orders, orders are ranked by the number of lines that pods
 under way serve at one station, per slot needed. Orders that such pods serve completely need no

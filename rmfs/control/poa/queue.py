@@ -67,8 +67,8 @@ class Queue(PickOrderAssignment[QueueParameters]):
     These steps are repeated until nothing changes. Only active stations have a pool. Units that
     other orders of a station need do not count as available for an order. Ties that the criteria
     leave go to the order that arrived first, then to the station with the lowest number. The rule
-    also decides when a pod reaches the head of a queue, so that the orders for which the pod was
-    fetched can get slots.
+    is also called whenever a pod reaches the head of a queue, so that the orders for which the pod
+    was fetched can get slots.
     """
 
     parameters_model = QueueParameters

@@ -126,12 +126,12 @@ ROA = {
 
 
 def poa(kind: str, block: Settings) -> Table:
-    """Return the POA table for an order batching.
+    """Return our table `poa` that corresponds to an order batching method of RAWSim-O.
 
     Parameters
     ----------
     kind
-        A name of `POA`.
+        Name of the method, one of `POA`.
 
     Raises
     ------

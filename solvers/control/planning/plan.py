@@ -149,7 +149,7 @@ class Plan:
                 yield planned.item.decision(station.index)
 
     def streams(self, pod: int, station: int) -> bool:
-        """Whether the plan of a station contains a waiting item that this pod serves alone."""
+        """Whether this pod alone serves an order, or a line, that waits for a slot of a station."""
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:

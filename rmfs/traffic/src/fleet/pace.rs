@@ -280,7 +280,8 @@ impl Fleet {
         };
         state.awaits = (stands_from, self.now);
         // who lifts is planned for what comes after
-        let lift = if state.phase == Phase::Transferring { state.program.pop_front() } else { None };
+        let lift =
+            if state.phase == Phase::Transferring { state.program.pop_front() } else { None };
         let pace = self.pace.as_mut().expect("a pace");
         pace.turn = Some(Turn { robot, asked, busy_until, took: 0 });
         // it is ranked in a queue by when it can depart
@@ -341,7 +342,9 @@ pub(super) fn stop_for(
         };
         since >= until
             || (!network.is_elevator(node)
-                && table.gap_at(network.resource[node as usize], since).is_some_and(|g| g.1 > until))
+                && table
+                    .gap_at(network.resource[node as usize], since)
+                    .is_some_and(|g| g.1 > until))
     };
     (first..state.moves.len()).find(can_stand).unwrap_or(first.max(state.moves.len()))
 }
