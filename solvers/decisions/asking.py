@@ -76,7 +76,7 @@ def asked_again(decision: Decision, where: str = "") -> Found:
         found = matching.solve(data)
         return found_of(decision.family, answer(found, None if found.values is None else {}))
     if by not in ASKERS:
-        raise InputError(f"{name}: asked.by: names none of {', '.join([*ASKERS, _MATCHING])}")
+        raise InputError(f"{name}: asked.by: must be one of {', '.join([*ASKERS, _MATCHING])}")
     module = _module(by)
     rest = {key: value for key, value in decision.asked.items() if key != "by"}
     try:

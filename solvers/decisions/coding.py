@@ -103,7 +103,7 @@ def decoded(
     unknown = raw.keys() - {field.name for field in fields}
     if unknown:
         valid = ", ".join(field.name for field in fields)
-        raise InputError(f"{where}: {part}.{min(unknown)}: no such field; valid: {valid}")
+        raise InputError(f"{where}: {part}.{min(unknown)}: unknown field; valid: {valid}")
     plain: Plain = {}
     for field in fields:
         if raw.get(field.name) is None:
@@ -202,9 +202,9 @@ def _filled(field: Field, raw: dict[str, Any], dimensions: int) -> NDArray[Any]:
     values = _numbers(field, raw["values"], 1)
     rising = isinstance(at, list) and all(type(one) is int for one in at)
     if not rising or len(at) != len(values) or any(a >= b for a, b in itertools.pairwise(at)):
-        raise _WrongError("at must hold rising places, one for each of values")
+        raise _WrongError("at must hold ascending positions, one for each of values")
     if at and not (at[0] >= 0 and at[-1] < size):
-        raise _WrongError(f"at must lie within 0 and {size - 1}")
+        raise _WrongError(f"at must hold positions from 0 to {size - 1}")
     array = np.full(size, _numbers(field, raw["all"], 0), dtype=values.dtype)
     array[at] = values
     return array.reshape(shape)
@@ -230,7 +230,7 @@ def _numbers(field: Field, raw: Any, dimensions: int) -> NDArray[Any]:
         return array
     reals = np.array([float(one) for one in flat], np.float64).reshape(shape)
     if np.isnan(reals).any() or (np.isinf(reals) & (reals != _INFINITE.get(field.kind))).any():
-        raise _WrongError(f"must hold {KINDS[field.kind]}; nan and other infinities are none")
+        raise _WrongError(f"must hold {KINDS[field.kind]}; nan and other infinities are invalid")
     if field.kind in _PARTS:
         finite, parts = reals[np.isfinite(reals)], _PARTS[field.kind]
         if (np.rint(finite * parts) / parts != finite).any():
@@ -276,7 +276,8 @@ def _check_shapes(
         for letter, size in zip(field.shape.split(), shape, strict=True):
             if known.setdefault(letter, size) != size:
                 raise InputError(
-                    f"{where}: {part}.{field.name}: has {size} where {letter} is {known[letter]}"
+                    f"{where}: {part}.{field.name}: has size {size}, but {letter} is "
+                    f"{known[letter]}"
                 )
 
 

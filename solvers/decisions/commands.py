@@ -68,7 +68,9 @@ def solve(
     from rmfs.solvers.decisions.solving import solve as answered
 
     if with_ and (method or work is not None):
-        raise InputError("--with: invalid with --method or --work, which choose our own")
+        raise InputError(
+            "--with: cannot be combined with --method or --work, which are for our own methods"
+        )
     for path in expanded(files):
         decision = _read(path)
         if with_:
@@ -98,7 +100,7 @@ def check(
         value = checked(decision, read_solution(decision, solution))
     except WrongError as error:
         raise InputError(f"{solution}: {error}") from None
-    typer.echo(f"{decision.name}: allowed, value {value!r}")
+    typer.echo(f"{decision.name}: feasible, value {value!r}")
 
 
 @app.command()
@@ -150,7 +152,7 @@ def convert(
             found = answer_of(decision, stated, solution, {"file": solution.name})
             target = out / f"{decision.name}.solution.json"
             write_solution(decision, found, target)
-            typer.echo(f"{decision.name}: allowed, value {found.objective!r}")
+            typer.echo(f"{decision.name}: feasible, value {found.objective!r}")
             typer.echo(target)
             continue
         target = out / f"{decision.name}.{to}"
@@ -302,7 +304,7 @@ def improve(
     families, sizes = known("family", family, SCHEMAS), known("size", size, SITES)
     effort = Effort(work, rounds, seconds, guard, load)
     count = improved(Library.load(library), effort, families, sizes, tell=typer.echo)
-    typer.echo(f"{count} values and bounds got better")
+    typer.echo(f"{count} values and bounds improved")
 
 
 @app.command()
@@ -329,7 +331,7 @@ def enter(
         except WrongError as error:
             raise InputError(f"{path}: {error}") from None
         row = known_.rows[name]
-        told = "entered" if better else "allowed, and no better than what is known"
+        told = "entered" if better else "feasible, but no better than the known solution"
         typer.echo(f"{name}: {told}: best value {row.value!r}, bound {row.bound!r}")
 
 

@@ -156,7 +156,8 @@ def read(path: Path) -> Decision:
     decision = Decision(family, data, _object(path, raw, "provenance"), _object(path, raw, "asked"))
     if raw.get("hash") != decision.hash:
         raise InputError(
-            f"{path}: hash: is not that of the data ({decision.hash}): the file was changed"
+            f"{path}: hash: does not match the data, whose hash is {decision.hash}: the file was "
+            "changed"
         )
     if raw.get("recorded") is None:
         return decision
@@ -176,7 +177,7 @@ def read_solution(decision: Decision, path: Path) -> Found:
     if raw.get("family") != decision.family:
         raise InputError(f"{path}: family: must be {decision.family}, is {raw.get('family')!r}")
     if raw.get("question") != decision.hash:
-        raise InputError(f"{path}: question: is another one; must be {decision.hash}")
+        raise InputError(f"{path}: question: must be {decision.hash}; this solves another question")
     return _found(str(path), decision, raw)
 
 
@@ -245,7 +246,7 @@ def _read(path: Path, wanted: str) -> dict[str, Any]:
             content = _unpacked(content)
         raw = json.loads(content, parse_constant=_refuse)
     except (ValueError, OSError, EOFError, RecursionError) as error:
-        raise InputError(f"{path}: is no JSON ({str(error).splitlines()[0]})") from None
+        raise InputError(f"{path}: is not valid JSON ({str(error).splitlines()[0]})") from None
     if not isinstance(raw, dict) or raw.get("format") != wanted:
         is_ = raw.get("format") if isinstance(raw, dict) else type(raw).__name__
         raise InputError(f'{path}: format: must be "{wanted}", is {is_!r}')
@@ -261,4 +262,4 @@ def _unpacked(content: bytes) -> bytes:
 
 
 def _refuse(word: str) -> float:
-    raise ValueError(f"{word} is no number")
+    raise ValueError(f"{word} is not a number")

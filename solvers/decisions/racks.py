@@ -111,7 +111,7 @@ def _table(
         where = f"{path}: line {number}: {section}"
         if section == ORDERS:
             if not row or len(row) != row[0] + 1:
-                raise InputError(f"{where}: must have as many products as it says")
+                raise InputError(f"{where}: the number of products differs from the one stated")
             row = [word for product in row[1:] for word in (product, 1)]
         if len(row) % 2 or max(row[::2], default=0) >= products:
             raise InputError(f"{where}: must have products from 0 to {products - 1}")

@@ -124,7 +124,7 @@ def _by_model(
     known = methods(decision.family)
     if method not in known:
         raise InputError(
-            f"method {method}: not one of {decision.family}; valid: {', '.join(known)}, {AS_ASKED}"
+            f"method {method}: unknown for {decision.family}; valid: {', '.join(known)}, {AS_ASKED}"
         )
     data = model_data(decision, name)
     first: Any = None

@@ -225,7 +225,7 @@ def _shaped(field: str, value: ArrayLike, shape: Sequence[int | None]) -> NDArra
     try:
         raw = np.asarray(value)
     except ValueError as error:
-        raise ModelError(field, "rows of different lengths") from error
+        raise ModelError(field, "has rows of different lengths") from error
     expected = tuple(shape)
     if raw.size == 0 and 0 in expected and raw.ndim < len(expected):
         # `[]` stands for an empty table of any width.

@@ -1,4 +1,4 @@
-"""The study of storage places and tasks, at smoke size."""
+"""The study of storage locations and tasks, at smoke size."""
 
 from __future__ import annotations
 

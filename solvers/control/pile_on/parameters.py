@@ -92,7 +92,9 @@ class JointParameters(SearchParameters):
     @pydantic.model_validator(mode="after")
     def _whole_if_later(self) -> Self:
         if self.later and self.split:
-            raise ValueError("later: invalid with split, where every line takes a slot by itself")
+            raise ValueError(
+                "later: cannot be combined with split, in which every line takes its own slot"
+            )
         return self
 
 

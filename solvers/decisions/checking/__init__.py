@@ -41,14 +41,14 @@ def check(decision: Decision, found: Found) -> float:
         contradicts the value.
     """
     if found.values is None:
-        raise WrongError("values: there are none")
+        raise WrongError("values: missing: the solution contains no answer")
     module = import_module(f"rmfs.solvers.decisions.checking.{decision.family}")
     value: float = module.value(decision.data, found.values)
     if not isfinite(value):
-        raise WrongError("what is not allowed is used: the value is infinite")
+        raise WrongError("values: use something that is not allowed: the value is infinite")
     slack = TOLERANCE * max(1.0, abs(value))
     if not isnan(found.objective) and abs(found.objective - value) > slack:
-        raise WrongError(f"objective: {found.objective!r} is stated, the values give {value!r}")
+        raise WrongError(f"objective: is {found.objective!r}, but the values give {value!r}")
     if not isnan(found.bound) and (found.bound - value) * decision.sign > slack:
-        raise WrongError(f"bound: {found.bound!r} is beyond the value {value!r}")
+        raise WrongError(f"bound: {found.bound!r} contradicts the value {value!r}")
     return value

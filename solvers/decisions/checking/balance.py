@@ -24,7 +24,7 @@ def value(data: Plain, values: Plain) -> float:
             require(parts[-1] < inf, f"robot[{task}]: the task must be done")
             continue
         arrive, due = float(data["arrive_s"][one, task]), float(data["due_s"][task])
-        require(arrive < inf, f"robot[{task}]: {one} may not do it")
+        require(arrive < inf, f"robot[{task}]: robot {one} may not do the task")
         parts.append(arrive)
         if due < arrive:
             parts.append(data["late_weight"] * (arrive - due))
@@ -34,5 +34,5 @@ def value(data: Plain, values: Plain) -> float:
         )
         sent[station] += 1
     for station, (count, room) in enumerate(zip(sent, data["room"].tolist(), strict=True)):
-        require(count <= room, f"robot: {count} go to station {station}, which has room for {room}")
+        require(count <= room, f"robot: station {station} has room for {room}, not {count}")
     return fsum(parts)

@@ -23,7 +23,10 @@ def value(data: Plain, values: Plain) -> float:
     parts = []
     for robot, (at, first, count) in enumerate(zip(group, begin, length, strict=True)):
         if at == NONE:
-            require(first == 0 and count == 0, f"begin[{robot}]: there is no stay")
+            require(
+                first == 0 and count == 0,
+                f"begin[{robot}], length[{robot}]: must be 0 without a stay",
+            )
         else:
             _allowed(data, robot, at, first, count)
         low, end = _levels(data, robot, at, first, count)
@@ -40,7 +43,10 @@ def value(data: Plain, values: Plain) -> float:
     parts.append(idle * slot_s * sum(gone))
     for at, row in enumerate(used):
         for slot, count in enumerate(row):
-            require(count <= data["places"][at, slot], f"group: {at} is full in slot {slot}")
+            require(
+                count <= data["places"][at, slot],
+                f"group: group {at} has too few places in slot {slot}",
+            )
     for slot in range(slots):
         there = len(group) - gone[slot]
         missed = sum(max(int(data["wanted"][case, slot]) - there, 0) for case in range(cases))
@@ -57,14 +63,16 @@ def _allowed(data: Plain, robot: int, at: int, first: int, count: int) -> None:
     """Refuse a stay that a robot may not have."""
     slots = data["wanted"].shape[1]
     most = 1 if data["swapped"][at] > 0 else int(_or(data, "longest", 8))
-    require(1 <= count <= most, f"length[{robot}]: {count} is not within 1 and {most}")
-    require(first >= 0 and first + count <= slots, f"begin[{robot}]: beyond the slots")
-    require(data["way_s"][robot, at] < inf, f"group[{robot}]: {at} is not allowed")
+    require(1 <= count <= most, f"length[{robot}]: must be from 1 to {most}, is {count}")
+    require(
+        first >= 0 and first + count <= slots, f"begin[{robot}]: the stay lies outside the slots"
+    )
+    require(data["way_s"][robot, at] < inf, f"group[{robot}]: group {at} is not allowed")
     if data["here"][robot] != NONE:
-        require(at == data["here"][robot], f"group[{robot}]: it is at another")
-        require(first == 0, f"begin[{robot}]: it is there already")
+        require(at == data["here"][robot], f"group[{robot}]: the robot is at another group")
+        require(first == 0, f"begin[{robot}]: must be 0, as the robot is at the group")
     elif not data["waits"][robot]:
-        require(first >= data["ready"][robot], f"begin[{robot}]: it is not ready")
+        require(first >= data["ready"][robot], f"begin[{robot}]: the robot is not ready")
 
 
 def _levels(data: Plain, robot: int, at: int, first: int, count: int) -> tuple[float, float]:

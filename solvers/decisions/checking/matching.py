@@ -20,6 +20,6 @@ def value(data: Plain, values: Plain) -> float:
     parts = []
     for task, one in enumerate(robot):
         cost = float(data["leave_s"][task] if one < 0 else travel[one, task])
-        require(cost < float("inf"), f"robot[{task}]: {one} is not allowed")
+        require(cost < float("inf"), f"robot[{task}]: the value {one} is not allowed")
         parts.append(cost)
     return fsum(parts)

@@ -38,32 +38,38 @@ def value(data: Plain, values: Plain) -> float:
     parts.append(data["weights.empty_slot"] * (int(data["slots"].sum()) - taken))
     for order, mine in enumerate(lines):
         parts += _rewards(data, order, mine, slots[order], covered, prospect[order])
-    require(pods == len(called), "pod_station: one per pod")
+    require(pods == len(called), "pod_station: must have one value per pod")
     return fsum(parts)
 
 
 def _slots(data: Plain, slots: list[list[int]]) -> None:
     for station, most in enumerate(data["slots"].tolist()):
         count = sum(station in mine for mine in slots)
-        require(count <= most, f"slot: {count} orders at station {station}, which has {most} slots")
+        require(count <= most, f"slot: station {station} has {most} slots, but gets {count} orders")
 
 
 def _order(data: Plain, order: int, slots: list[int], covered: list[int], prospect: int) -> None:
     """Check slots, lines and prospect of one order by the rules of the variant."""
     variant, name = data["variant"], f"order {order}"
     for station in covered:
-        require(station < 0 or station in slots, f"{name}: a line is covered where it has no slot")
+        require(
+            station < 0 or station in slots,
+            f"{name}: a line is covered at a station where the order has no slot",
+        )
     if variant in ("whole", "later", "split-time"):
-        require(len(slots) <= 1, f"{name}: slots at several stations")
+        require(len(slots) <= 1, f"{name}: has slots at several stations")
     if variant in ("whole", "split-stations") and slots:
-        require(NONE not in covered, f"{name}: has a slot and an open line")
+        require(NONE not in covered, f"{name}: has a slot, but also an open line")
     if variant in ("split-stations", "split-time", "split-both"):
         for station in slots:
             require(station in covered, f"{name}: its slot at {station} covers no line")
     if prospect >= 0:
         require(data["weights.prospects"], f"{name}: prospects are not rewarded")
-        require(not slots, f"{name}: is no prospect: it has a slot")
-        require(data["slots"][prospect] > 0, f"{name}: prospect at {prospect}, which has no slots")
+        require(not slots, f"{name}: cannot be a prospect, as it has a slot")
+        require(
+            data["slots"][prospect] > 0,
+            f"{name}: is a prospect at station {prospect}, which has no slots",
+        )
 
 
 def _supply(
@@ -93,7 +99,7 @@ def _supply(
             short = max(0, units - before[sku])
             surplus = max(0, before[sku] - units)
             left = max(0, short + asked[sku] - surplus - extra[sku])
-            require(left <= short, f"station {station}: SKU {sku} does not suffice")
+            require(left <= short, f"station {station}: pods hold too few units of SKU {sku}")
             total += left
     return total
 
@@ -118,7 +124,7 @@ def _calls(data: Plain, covered: list[int], called: list[int]) -> None:
         require(may, f"pod_station[{pod}]: no pod may be called to station {station}")
         holds = set(data["stock"][pod].nonzero()[0].tolist())
         useful = holds & (served.get(station, set()) | short[station])
-        require(useful, f"pod_station[{pod}]: the pod serves nobody")
+        require(useful, f"pod_station[{pod}]: the pod serves no order")
 
 
 def _cost_of_calls(data: Plain, called: list[int]) -> list[float]:
@@ -132,7 +138,10 @@ def _cost_of_calls(data: Plain, called: list[int]) -> list[float]:
 def _cost_of_robots(data: Plain, called: list[int], robots: list[int]) -> list[float]:
     """Check who fetches which pod."""
     if data["fetch"] is None:
-        require(all(robot < 0 for robot in robots), "pod_robot: robots are not decided")
+        require(
+            all(robot < 0 for robot in robots),
+            "pod_robot: must be -1, as the question does not ask for robots",
+        )
         return []
     given = data["robot_pod"]
     bound = [NONE] * len(data["fetch"]) if given is None else given.tolist()
@@ -140,7 +149,9 @@ def _cost_of_robots(data: Plain, called: list[int], robots: list[int]) -> list[f
     parts = []
     for pod, robot in enumerate(robots):
         needs = called[pod] >= 0 and pod not in bound
-        require((robot >= 0) == needs, f"pod_robot[{pod}]: the pod needs a robot, or does not")
+        require(
+            (robot >= 0) == needs, f"pod_robot[{pod}]: the pod needs {'a' if needs else 'no'} robot"
+        )
         if robot >= 0:
             require(bound[robot] < 0, f"pod_robot[{pod}]: robot {robot} is bound to another pod")
             parts.append(data["weights.travel"] * float(data["fetch"][robot, pod]))

@@ -19,6 +19,6 @@ def value(data: Plain, values: Plain) -> float:
     parts = []
     for pod, at in enumerate(place):
         way = float(data["travel_s"][pod, at])
-        require(way < inf, f"place[{pod}]: {at} is not allowed")
+        require(way < inf, f"place[{pod}]: location {at} is not allowed")
         parts += [way, float(data["visits"][pod]) * float(data["access_s"][at])]
     return fsum(parts)

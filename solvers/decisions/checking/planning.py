@@ -59,7 +59,7 @@ def _cost(data: Plain, new: list[list[int]]) -> list[float]:
         first = coming_to.count(station)
         for number, pod in enumerate(pods):
             cost = float(data["cost"][pod, station])
-            require(abs(cost) < inf, f"pods[{station}]: pod {pod} cannot come")
+            require(abs(cost) < inf, f"pods[{station}]: pod {pod} may not be called")
             parts.append(cost * data["decay"] ** (first + number))
     return parts
 
@@ -68,11 +68,13 @@ def _order(data: Plain, order: int, at: int, visits: list[int]) -> None:
     """An open order stays; of a waiting one all lines are served, or none."""
     station = int(data["order_station"][order])
     if station >= 0:
-        require(at == station, f"order_station[{order}]: it is open at {station}")
+        require(
+            at == station, f"order_station[{order}]: must be {station}, where the order is open"
+        )
         return
     served = [visit >= 0 for visit in visits]
     whole = all(served) if at >= 0 else not any(served)
-    require(whole, f"order {order}: placed with lines left, or served without a station")
+    require(whole, f"order {order}: must have a station and all its lines served, or neither")
 
 
 def _last(data: Plain, order: int, visits: list[int]) -> float:
@@ -98,7 +100,7 @@ def _stock(data: Plain, visits: list[list[int]], at: list[int], visit_of: list[i
     coming_to = data["coming_to"].tolist()
     for station, pods in enumerate(visits):
         for visit in range(coming_to.count(station), len(pods)):
-            require((station, visit) in busy, f"station {station}, visit {visit}: serves nothing")
+            require((station, visit) in busy, f"station {station}, visit {visit}: serves no line")
 
 
 def _slots(
@@ -125,4 +127,7 @@ def _slots(
                 kept[station, visit] = kept.get((station, visit), 0) + 1
     for (station, visit), count in kept.items():
         most = max(int(data["slots"][station]) - 1, open_now[station])
-        require(count <= most, f"station {station}, visit {visit}: keeps {count} orders of {most}")
+        require(
+            count <= most,
+            f"station {station}, visit {visit}: {count} orders stay open (most: {most})",
+        )

@@ -18,7 +18,9 @@ def value(data: Plain, values: Plain) -> float:
     within("pod_station", pod_station, -1, len(slots))
     for station, most in enumerate(slots):
         count = order_station.count(station)
-        require(count == most, f"order_station: {count} at station {station}, must be {most}")
+        require(
+            count == most, f"order_station: station {station} must get {most} orders, not {count}"
+        )
     skus = data["units"].shape[1]
     have = [[0] * skus for _ in slots]
     for pod, station in enumerate(pod_station):

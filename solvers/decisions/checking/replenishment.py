@@ -26,17 +26,23 @@ def value(data: Plain, values: Plain) -> float:
             require(isfinite(parts[-1]), f"pod[{bundle}]: the bundle must be stored")
             continue
         parts.append(-float(data["worth_s"][bundle, one]))
-        require(isfinite(parts[-1]), f"pod[{bundle}]: {one} is not allowed")
-        require(station[one] >= 0, f"station[{one}]: the pod gets a bundle and is not brought")
+        require(isfinite(parts[-1]), f"pod[{bundle}]: pod {one} is not allowed")
+        require(
+            station[one] >= 0,
+            f"station[{one}]: the pod gets a bundle, but is brought to no station",
+        )
         space = Fraction(float(data["space"][bundle]))
         in_pod[one] += space
         at[station[one]] += space
     for name, used, most in (("pod", in_pod, "pod_space"), ("station", at, "station_space")):
         for number, full in enumerate(used):
             limit = float(data[most][number])
-            require(full <= limit, f"{name} {number}: {float(full)} do not fit into {limit}")
+            require(
+                full <= limit,
+                f"{name} {number}: has {limit} space units free, but gets {float(full)}",
+            )
     for one, to in enumerate(station):
         if to >= 0:
             parts.append(float(data["trip_s"][one, to]))
-            require(isfinite(parts[-1]), f"station[{one}]: {to} is not allowed")
+            require(isfinite(parts[-1]), f"station[{one}]: station {to} is not allowed")
     return fsum(parts)

@@ -24,19 +24,22 @@ def value(data: Plain, values: Plain) -> float:
             require(one >= -slack, f"{name}[{place}]: is negative")
     busy = [*_picking(data, given, slack), *_refill(data, given, slack)]
     most = robots * (window + _outside(data))
-    require(fsum(busy) <= most + slack, f"robots have {most} s, not {fsum(busy)}")
+    require(fsum(busy) <= most + slack, f"robots work {fsum(busy)} s, but have only {most} s")
     total = fsum(given["units"])
     bundled = data["refill.bundle_units"] * fsum(given["bundles"])
     held = _content(data["stock.pod_units"].tolist(), fsum(given["visits"]))
-    require(total <= held + bundled + slack, f"pods hold {held + bundled} units, not {total}")
-    require(total <= data["orders.units"] + slack, "more units than are asked for")
+    require(
+        total <= held + bundled + slack,
+        f"units: {total} are picked, but pods hold only {held + bundled}",
+    )
+    require(total <= data["orders.units"] + slack, "units: more are picked than ordered")
     if data["orders.lone_units"] < inf and data["orders.largest_order_units"] < inf:
         lone = fsum(given["lone_units"])
-        require(lone <= data["orders.lone_units"] + slack, "more units of lone orders than exist")
+        require(lone <= data["orders.lone_units"] + slack, "lone_units: more than ordered")
         for s, units in enumerate(given["units"]):
             slots = int(data["picking.order_slots"][s]) * data["orders.largest_order_units"]
             limit = given["lone_units"][s] + slots * (given["visits"][s] + 1)
-            require(units <= limit + slack, f"units[{s}]: slots allow {limit}")
+            require(units <= limit + slack, f"units[{s}]: at most {limit}, by the order slots")
     return total / (window / 3600.0)
 
 
@@ -52,16 +55,18 @@ def _picking(data: Plain, given: dict[str, list[float]], slack: float) -> list[f
             pick + float(data["picking.changeover_s"][s]),
         )
         used = cadence * units + (change - cadence) * visits
-        require(used <= window + change + slack, f"units[{s}]: take {used} s of the station")
+        require(
+            used <= window + change + slack, f"units[{s}]: would occupy the station for {used} s"
+        )
         fits = floor(window / cadence * (1.0 + TOLERANCE)) + 1
         works = data["picking.order_slots"][s] > 0 and data["robots"] > 0
         works = works and len(data["stock.pod_units"]) > 0
         for name in ("units", "visits", "lone_units"):
             limit = fits if works else 0
             require(given[name][s] <= limit + slack, f"{name}[{s}]: at most {limit}")
-        require(visits <= units + slack, f"visits[{s}]: each needs a unit")
+        require(visits <= units + slack, f"visits[{s}]: there must be at least one unit per visit")
         most = _visit_units(data, s)
-        require(units <= most * visits + slack, f"units[{s}]: a visit has {most} at most")
+        require(units <= most * visits + slack, f"units[{s}]: at most {most} per visit")
         ways = float(data["picking.inbound_s"][s]) + float(data["picking.outbound_s"][s])
         busy.append(cadence * units + (ways + pick - cadence) * visits)
     return busy
@@ -86,7 +91,7 @@ def _refill(data: Plain, given: dict[str, list[float]], slack: float) -> list[fl
         require(bundles <= fits + slack, f"bundles[{q}]: at most {fits}")
         require(visits <= fits + slack, f"refill_visits[{q}]: at most {fits}")
         most = data["refill.bundles_per_visit"]
-        require(bundles <= most * visits + slack, f"bundles[{q}]: a visit has {most} at most")
+        require(bundles <= most * visits + slack, f"bundles[{q}]: at most {most} per visit")
         ways = float(data["refill.inbound_s"][q]) + float(data["refill.outbound_s"][q])
         busy.append(each * bundles + ways * visits)
     return busy

@@ -27,12 +27,18 @@ def value(data: Plain, values: Plain) -> float:
         within(f"tasks[{robot}]", tasks, 0, count)
         done += tasks
         carries = bool(data["carrying"][robot])
-        require((first[robot] >= 0) == carries, f"robot_place[{robot}]: carries a pod, or not")
+        require(
+            (first[robot] >= 0) == carries,
+            f"robot_place[{robot}]: must be -1 if and only if the robot carries no pod",
+        )
         parts += _route(data, robot, tasks, place, first[robot])
     once("tasks", done)
     left = set(range(count)) - set(done)
     for task, at in enumerate(place):
-        require((at < 0) == (task in left), f"place[{task}]: for a task that is left, or none")
+        require(
+            (at < 0) == (task in left),
+            f"place[{task}]: must be -1 if and only if the task is left undone",
+        )
     for task in left:
         parts.append(float(data["skip_s"][task]))
         require(parts[-1] < inf, f"task {task} must be done")
@@ -47,7 +53,9 @@ def _route(data: Plain, robot: int, tasks: list[int], place: list[int], at: int)
         parts.append(_way(data["stow_s"], robot, at, "stow_s"))
         time += parts[-1]
     for task in tasks:
-        require(place[task] >= 0, f"place[{task}]: is missing, and robot {robot} does the task")
+        require(
+            place[task] >= 0, f"place[{task}]: is missing, although robot {robot} does the task"
+        )
         way = (
             _way(data["reach_s"], robot, task, "reach_s")
             if at < 0
@@ -56,7 +64,10 @@ def _route(data: Plain, robot: int, tasks: list[int], place: list[int], at: int)
         inward = way + float(data["bring_s"][task])
         arrive = max(time + inward, float(data["earliest_s"][task]))
         latest = float(data["latest_s"][task])
-        require(arrive <= latest + SLACK_S, f"task {task}: at {arrive} s, later than {latest} s")
+        require(
+            arrive <= latest + SLACK_S,
+            f"task {task}: the pod arrives at {arrive} s, later than {latest} s",
+        )
         due = float(data["due_s"][task])
         at = place[task]
         outward = _way(data["store_s"], task, at, "store_s")

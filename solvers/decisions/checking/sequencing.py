@@ -20,7 +20,10 @@ def value(data: Plain, values: Plain) -> float:
     within("pods", pods, 0, len(holds))
     within("start", start, -1, len(pods))
     for order, opened in enumerate(data["opened"].tolist()):
-        require((start[order] < 0) == bool(opened), f"start[{order}]: open before, or not")
+        require(
+            (start[order] < 0) == bool(opened),
+            f"start[{order}]: must be -1 if and only if the order is open at the start",
+        )
     open_ = [order for order, visit in enumerate(start) if visit < 0]
     require(len(open_) <= capacity, "more orders are open than there are slots")
     for visit, pod in enumerate(pods):
@@ -32,9 +35,9 @@ def value(data: Plain, values: Plain) -> float:
         passing = [order for order in new if not missing[order]]
         stay = [order for order in new if missing[order]]
         slots = max(len(kept) + bool(passing), len(kept) + len(stay))
-        require(slots <= capacity, f"more orders than slots at visit {visit}")
+        require(slots <= capacity, f"more orders are open than there are slots at visit {visit}")
         open_ = kept + stay
     for order, left in enumerate(missing):
-        require(not left, f"order {order} still misses SKU {min(left, default=-1)}")
+        require(not left, f"order {order} never gets SKU {min(left, default=-1)}")
     changes = sum(one != next_ for one, next_ in itertools.pairwise(pods))
     return float(changes + 1) if pods else 0.0

@@ -21,12 +21,12 @@ def value(data: Plain, values: Plain) -> float:
     changes = []
     for stay, at in enumerate(zone):
         cost = float(data["cost_s"][stay, at])
-        require(cost < inf, f"zone[{stay}]: {at} is not allowed")
+        require(cost < inf, f"zone[{stay}]: zone {at} is not allowed")
         parts.append(cost)
         changes.append((float(data["begin_s"][stay]), 1, at))
         changes.append((float(data["end_s"][stay]), -1, at))
     there = [0] * len(capacity)
     for time, change, at in sorted(changes, key=lambda one: one[:2]):
         there[at] += change
-        require(there[at] <= capacity[at], f"zone: {at} has no place left at {time} s")
+        require(there[at] <= capacity[at], f"zone: zone {at} has no free location at {time} s")
     return fsum(parts)

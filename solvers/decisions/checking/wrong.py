@@ -21,7 +21,7 @@ def require(condition: object, problem: str) -> None:
 def within(name: str, values: Iterable[int], low: int, end: int) -> None:
     """Require that every number lies within [low, end)."""
     for place, value in enumerate(values):
-        require(low <= value < end, f"{name}[{place}]: {value} is not within {low} and {end - 1}")
+        require(low <= value < end, f"{name}[{place}]: must be from {low} to {end - 1}, is {value}")
 
 
 def once(name: str, values: Iterable[int]) -> None:

@@ -22,12 +22,18 @@ def value(data: Plain, values: Plain) -> float:
     slack = TOLERANCE * max(1.0, fsum(pods))
     parts = []
     for one, row in enumerate(standing):
-        require(min(row, default=0.0) >= 0.0, f"standing[{one}]: a negative number of pods")
+        require(
+            min(row, default=0.0) >= 0.0,
+            f"standing[{one}]: the number of pods must not be negative",
+        )
         require(abs(fsum(row) - pods[one]) <= slack, f"standing[{one}]: must add up to {pods[one]}")
         parts += [rate[one] * float(data["visit_s"][one, at]) * x for at, x in enumerate(row)]
     for at, most in enumerate(places):
         there = fsum(row[at] for row in standing)
-        require(there <= most + slack, f"standing: zone {at} has {most} places, not {there}")
+        require(
+            there <= most + slack,
+            f"standing: zone {at} has {most} locations, but gets {there} pods",
+        )
         traffic = fsum(rate[one] * row[at] for one, row in enumerate(standing))
         parts.append(float(data["congestion_s_h"][at]) * traffic * traffic)
     return fsum(parts)

@@ -88,7 +88,7 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
         else:
             _run(solver, command, program, solution, seconds)
         if not solution.exists():
-            raise InputError(f"{name}: {solver} left no solution")
+            raise InputError(f"{name}: {solver} wrote no solution")
         by: dict[str, object] = {
             "method": f"mps:{solver}",
             "backend": solver.split()[0],
@@ -118,7 +118,7 @@ def _require_command(solver: str, command: str) -> None:
             "{solution} and {seconds}"
         )
     if shutil.which(words[0]) is None:
-        raise InputError(f"solver {solver!r}: {words[0]} is not on the path")
+        raise InputError(f"solver {solver!r}: the program {words[0]} was not found")
 
 
 def _run(solver: str, command: str, program: Path, solution: Path, seconds: float) -> None:

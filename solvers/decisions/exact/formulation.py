@@ -97,7 +97,7 @@ def _sequencing(data: Any, where: str) -> Exact:
     from rmfs.solvers.models.sequencing.program import formulate
 
     if not data.feasible:
-        raise InputError(f"{where}: has no answer: a SKU that is needed is on no pod")
+        raise InputError(f"{where}: has no solution: no pod holds a SKU that is needed")
     plan = merged(beam.solve(data).required)
     least = int(min(visits_bound(data), objective(data, plan)))
     return _of("sequencing", formulate(data, plan.pods.size, least))

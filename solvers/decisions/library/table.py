@@ -240,5 +240,5 @@ def _rows(path: Path) -> Iterator[Row]:
 def _refuse_beyond(row: Row, value: float, bound: float, sign: int) -> None:
     if (bound - value) * sign > TOLERANCE * max(1.0, abs(value)):
         raise InputError(
-            f"{row.question}: bound {bound!r} is beyond value {value!r}: one of them is wrong"
+            f"{row.question}: bound {bound!r} contradicts value {value!r}: one of them is wrong"
         )

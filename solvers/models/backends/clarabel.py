@@ -84,7 +84,11 @@ class LinearRelaxation:
             If the wall-clock guard ran out.
         """
         began = time.perf_counter()
-        require(self.fits(program), "program", "has another pattern than the compiled relaxation")
+        require(
+            self.fits(program),
+            "program",
+            "has a different sparsity pattern from the compiled relaxation",
+        )
         self._set(program)
         built = time.perf_counter()
         x, multipliers, iterations = None, np.zeros(program.rows), 0

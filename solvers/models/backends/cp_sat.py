@@ -79,7 +79,11 @@ def solve(
     solver.parameters.cp_model_presolve = presolve
     built = time.perf_counter()
     status = run(solver, model)
-    require(status != cp_model.MODEL_INVALID, "program", f"CP-SAT refuses it: {model.validate()}")
+    require(
+        status != cp_model.MODEL_INVALID,
+        "program",
+        f"CP-SAT rejects the program: {model.validate()}",
+    )
     check_guard(solver, status, limits)
     return _outcome(program, solver, status, scale, began, built)
 
@@ -167,7 +171,11 @@ def _model(
     program: LinearProgram, scale: int, start: NDArray[np.float64] | None
 ) -> cp_model.CpModel:
     """Write columns, rows, costs and start into the solver's protocol structure."""
-    require(bool(program.integer.all()), "integer", "CP-SAT needs whole columns only")
+    require(
+        bool(program.integer.all()),
+        "integer",
+        "must be true for all columns, as CP-SAT needs integer columns",
+    )
     require(bool(np.all(program.lower >= 0)), "lower", "CP-SAT needs non-negative columns")
     model = cp_model.CpModel()
     proto = model.proto

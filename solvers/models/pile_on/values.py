@@ -205,7 +205,7 @@ def violations(data: PileOn, values: Assignment) -> list[str]:
         "prospect waits for a station without slots": np.append(data.slots == 0, False)[
             values.prospect
         ],
-        "called pod serves nobody": _idle(data, values, called),
+        "called pod serves no order": _idle(data, values, called),
     }
     checks |= _order_checks(data, values, parts)
     checks |= _robot_checks(data, values)
@@ -251,12 +251,12 @@ def _robot_checks(data: PileOn, values: Assignment) -> dict[str, Flags]:
     needs = data.needs_robot & (values.pod_station >= 0)
     checks = {
         "called pod has no robot": needs & ~fetched,
-        "pod has a robot it does not need": fetched & ~needs,
+        "pod has a robot, but needs none": fetched & ~needs,
     }
     if data.robot_pod is not None:
         robot = values.pod_robot[fetched]
         trips = np.bincount(robot, minlength=data.robots)
-        checks["robot is bound or fetches two pods"] = (trips > 1) | (
+        checks["robot fetches two pods, or one although it is bound"] = (trips > 1) | (
             (trips > 0) & (data.robot_pod >= 0)
         )
     return checks

@@ -127,13 +127,13 @@ def violations(data: RackAllocation, allocation: Allocation) -> list[str]:
         ("pod", allocation.pod_station, pods),
     ):
         if chosen.shape != (count,) or not ((chosen >= NONE) & (chosen < stations)).all():
-            return [f"not one station, or none, for every {name}"]
+            return [f"{name}_station must have a station or -1 for each {name}"]
     found = []
     given = np.bincount(
         allocation.order_station[allocation.order_station != NONE], minlength=stations
     )
     if (given != data.slots).any():
-        found.append("a station that is not filled, or overfilled")
+        found.append("a station gets more or fewer orders than it has slots")
     for station in range(stations):
         asked = data.units[allocation.order_station == station].sum(axis=0)
         there = data.stock[allocation.pod_station == station].sum(axis=0)

@@ -142,17 +142,17 @@ def violations(data: Replenishment, stocking: Stocking) -> list[str]:
     pod, station = stocking.pod, stocking.station
     for chosen, count, of in ((pod, pods, data.leave_s), (station, stations, data.pod_space)):
         if chosen.shape != of.shape or not ((chosen >= LEFT) & (chosen < count)).all():
-            return ["not one pod, or none, for every bundle, and one station, or none, per pod"]
+            return ["pod must have a pod or -1 per bundle, and station a station or -1 per pod"]
     found = []
     stored = pod != LEFT
     if (station[pod[stored]] == LEFT).any():
-        return ["a bundle in a pod that is not brought"]
+        return ["a pod gets a bundle, but is brought to no station"]
     in_pod = np.bincount(pod[stored], weights=data.space[stored], minlength=pods)
     if (in_pod > data.pod_space).any():
-        found.append("more bundles than fit into a pod")
+        found.append("a pod gets more bundles than fit into it")
     at = np.bincount(station[pod[stored]], weights=data.space[stored], minlength=stations)
     if (at > data.station_space).any():
-        found.append("more bundles than fit into a station")
+        found.append("a station gets more bundles than fit into it")
     if not math.isfinite(objective(data, stocking)):
-        found.append("a pair that is not allowed, or a bundle left that must be stored")
+        found.append("a pair is not allowed, or a bundle is left out that must be stored")
     return found

@@ -56,7 +56,9 @@ class PickStations:
         slots = integers("order_slots", self.order_slots, count, low=0)
         object.__setattr__(self, "order_slots", slots)
         require(
-            bool((self.cadence_s > 0).all()), "unit_transfer_s", "no station is infinitely fast"
+            bool((self.cadence_s > 0).all()),
+            "unit_transfer_s",
+            ("must be above 0: no station is infinitely fast"),
         )
 
     @property
@@ -106,7 +108,7 @@ class Refill:
             checked = reals(field, getattr(self, field), count, low=0)
             object.__setattr__(self, field, checked)
         fast = bool((self.bundle_transfer_s > 0).all())
-        require(fast, "bundle_transfer_s", "no station is infinitely fast")
+        require(fast, "bundle_transfer_s", "must be above 0: no station is infinitely fast")
         number("bundle_units", self.bundle_units, low=1)
         number("bundles_per_visit", self.bundles_per_visit, low=1)
 

@@ -89,7 +89,7 @@ def violations(data: RunBound, values: Throughput) -> list[str]:
     before = np.cumsum(pods) - pods
     x[columns.pods] = np.clip(values.visits.sum() - before, 0.0, pods)
     broken = linear.violation(x) > _ROUNDING * max(1.0, data.duration_s * max(1, data.robots))
-    return ["counts that no run can reach"] if broken else []
+    return ["no run can reach these counts"] if broken else []
 
 
 def program(data: RunBound) -> tuple[LinearProgram, Columns]:

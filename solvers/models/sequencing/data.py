@@ -157,9 +157,9 @@ def violations(data: Sequencing, plan: VisitSequence) -> list[str]:
     visits, end = plan.pods.size, finish(data, plan)
     problems = []
     if bool(((plan.start < 0) != data.open).any()):
-        problems.append("exactly the orders open before start before the first visit")
+        problems.append("start must be -1 for the orders open at the start, and only for these")
     if bool((plan.start >= visits).any()) and data.orders:
-        problems.append("order is never opened")
+        problems.append("an order is never opened")
     if bool((end == NEVER).any()):
         problems.append(f"order is never complete: {np.flatnonzero(end == NEVER)[0]}")
     for visit in range(visits):

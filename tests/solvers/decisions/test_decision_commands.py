@@ -45,7 +45,7 @@ def test_a_run_writes_questions_that_are_solved_and_checked(
     for question in Path("questions").glob("*.json.gz"):
         answer = f"answers/{question.name.removesuffix('.json.gz')}.solution.json"
         assert main(["decisions", "check", str(question), answer]) == 0
-    assert "allowed, value" in capsys.readouterr().out
+    assert "feasible, value" in capsys.readouterr().out
 
 
 def test_methods_limits_and_seeds_can_be_chosen(
@@ -55,7 +55,7 @@ def test_methods_limits_and_seeds_can_be_chosen(
     assert main(["decisions", "solve", str(one), "--method", "dynamic", "--seed", "3"]) == 0
     assert "dynamic, optimal" in capsys.readouterr().out
     assert main(["decisions", "solve", str(one), "--method", "simplex"]) == 2
-    assert "method simplex: not one of sequencing; valid: cp_sat, dynamic" in complaint(capsys)
+    assert "method simplex: unknown for sequencing; valid: cp_sat, dynamic" in complaint(capsys)
     assert main(["decisions", "solve", "nowhere.json"]) == 2
     assert "nowhere.json: no such file" in complaint(capsys)
 
@@ -69,7 +69,8 @@ def spoil_robot(raw: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "told"), [(spoil_value, "is stated"), (spoil_robot, "3 is not within -1 and 2")]
+    ("spoil", "told"),
+    [(spoil_value, "but the values give"), (spoil_robot, "must be from -1 to 2, is 3")],
 )
 def test_a_wrong_solution_ends_in_one_line_and_code_2(
     spoil: Any, told: str, folder: Path, capsys: pytest.CaptureFixture[str]
@@ -126,9 +127,9 @@ def test_a_solver_of_somebody_else_is_a_command(
 
 FAILING = {
     "nobody": ("cp-optimizer", "must be one of highs, scip, gurobi, cplex, cbc, or a command"),
-    "missing": ("no-such-solver {program} {solution}", "no-such-solver is not on the path"),
+    "missing": ("no-such-solver {program} {solution}", "the program no-such-solver was not found"),
     "failing": ("false {program} {solution}", "ended with code 1"),
-    "silent": ("true {program} {solution}", "left no solution"),
+    "silent": ("true {program} {solution}", "wrote no solution"),
     "wrong": ("cp {program} {solution}", "matching-"),
     "quoted": ('solver "{program} {solution}', "No closing quotation"),
 }

@@ -99,13 +99,13 @@ DAMAGE: dict[str, tuple[Any, str]] = {
     "family": (lambda raw: raw.update(family="pileon"), "family: must be one of pile_on"),
     "family-kind": (lambda raw: raw.update(family=3), "family: must be one of"),
     "format": (lambda raw: raw.update(format="rmfs-decision/2"), 'must be "rmfs-decision/1"'),
-    "changed": (lambda raw: raw["data"]["leave_s"].__setitem__(0, 1.5), "hash: is not that of"),
+    "changed": (lambda raw: raw["data"]["leave_s"].__setitem__(0, 1.5), "hash: does not match"),
     "missing": (lambda raw: raw["data"].pop("leave_s"), "data.leave_s: is missing"),
-    "unknown": (lambda raw: raw["data"].update(speed=1), "data.speed: no such field; valid: tr"),
-    "short": (lambda raw: raw["data"]["leave_s"].pop(), "has 3 where T is 4"),
+    "unknown": (lambda raw: raw["data"].update(speed=1), "data.speed: unknown field; valid: tr"),
+    "short": (lambda raw: raw["data"]["leave_s"].pop(), "has size 3, but T is 4"),
     "ragged": (lambda raw: raw["data"]["travel_s"][0].pop(), "rows of different lengths"),
     "flat": (lambda raw: raw["data"].update(travel_s=[1.0]), "must be lists in 1 dim"),
-    "nan": (lambda raw: raw["data"]["leave_s"].__setitem__(0, float("nan")), "NaN is no number"),
+    "nan": (lambda raw: raw["data"]["leave_s"].__setitem__(0, float("nan")), "NaN is not a number"),
     "inf": (lambda raw: raw["data"]["leave_s"].__setitem__(0, "-inf"), "leave_s: must hold a n"),
     "text": (lambda raw: raw["data"]["leave_s"].__setitem__(0, "7"), "leave_s: must hold a nu"),
     "truth": (lambda raw: raw["data"]["leave_s"].__setitem__(0, True), "leave_s: must hold a n"),
@@ -117,7 +117,7 @@ DAMAGE: dict[str, tuple[Any, str]] = {
         lambda raw: raw["data"].update(
             leave_s={"shape": [4], "all": 0, "at": [2, 1], "values": [1, 2]}
         ),
-        "at must hold rising places",
+        "at must hold ascending positions",
     ),
     "sparse-size": (
         lambda raw: raw["data"].update(
@@ -166,7 +166,7 @@ def test_a_missing_file_is_refused(tmp_path: Path) -> None:
 def test_solutions_of_other_questions_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "s.json"
     write_found(MATCHING, Found({"robot": np.array([-1, -1, -1, -1])}), path)
-    with pytest.raises(InputError, match="question: is another one"):
+    with pytest.raises(InputError, match=r"question: must be .* this solves another question"):
         read_solution(sample("matching", 1), path)
     with pytest.raises(InputError, match="family: must be balance"):
         read_solution(sample("balance", 0), path)

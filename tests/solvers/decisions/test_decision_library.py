@@ -58,9 +58,9 @@ def test_only_what_is_allowed_and_better_is_entered(library: Library) -> None:
     )
     assert library.enter(question, rule, "a rule") == []
     before = library.rows[question.name]
-    with pytest.raises(WrongError, match="is stated"):
+    with pytest.raises(WrongError, match="but the values give"):
         library.enter(question, replace(best, objective=best.objective - 5), "a liar")
-    with pytest.raises(InputError, match=r"bound .* is beyond value"):
+    with pytest.raises(InputError, match=r"bound .* contradicts value"):
         library.enter(question, None, "a liar", bound=best.objective + 1)
     with pytest.raises(InputError, match="is not in"):
         library.enter(sample("matching", 9), best, "somebody")
@@ -101,7 +101,7 @@ def test_solutions_of_strangers_are_entered(
     assert "entered: best value" in capsys.readouterr().out
     assert Library.load(library.folder).rows[question.name].value_by == "A. Stranger"
     assert main(given) == 0
-    assert "allowed, and no better" in capsys.readouterr().out
+    assert "feasible, but no better" in capsys.readouterr().out
     wrong = replace(solve(question), objective=-1e6)
     write_solution(question, wrong, Path(mine))
     assert main(given) == 2

@@ -58,7 +58,7 @@ def test_a_file_becomes_a_question(tmp_path: Path) -> None:
         ("R 3", "R three", "line 2: R: must be whole numbers"),
         ("0 0 3 1 1", "0 0 3 1 x", "line 8: Racks: must be whole numbers"),
         ("0 0 3 1 1", "0 0 3 1", "line 8: Racks: must have products from 0 to 5"),
-        ("1 2 2 3\n2 1", "1 2 2 3 4\n2 1", "line 14: Orders: must have as many products"),
+        ("1 2 2 3\n2 1", "1 2 2 3 4\n2 1", "line 14: Orders: the number of products"),
         ("2 1 5", "2 1 6", "line 15: Orders: must have products from 0 to 5"),
         ("2 1 5", "1 1 5", "Orders: must have the rows 0 to 2, each once"),
     ],

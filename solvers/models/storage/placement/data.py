@@ -86,10 +86,10 @@ def violations(data: Placement, place: NDArray[np.int64]) -> list[str]:
     """
     pods, places = data.travel_s.shape
     if place.shape != (pods,) or not ((place >= 0) & (place < places)).all():
-        return ["not one place for every pod"]
+        return ["place must have a location for each pod"]
     found = []
     if len(np.unique(place)) < pods:
-        found.append("two pods on one place")
+        found.append("two pods are put at one location")
     if np.isinf(data.travel_s[np.arange(pods), place]).any():
-        found.append("a pod on a place that is not allowed")
+        found.append("a pod is put at a location that is not allowed")
     return found

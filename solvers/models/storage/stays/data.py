@@ -124,11 +124,11 @@ def violations(data: Stays, zone: NDArray[np.int64]) -> list[str]:
     """
     stays, zones = data.cost_s.shape
     if zone.shape != (stays,) or not ((zone >= 0) & (zone < zones)).all():
-        return ["not one zone for every stay"]
+        return ["zone must have a zone for each stay"]
     found = []
     if np.isinf(data.cost_s[np.arange(stays), zone]).any():
-        found.append("a stay in a zone where it is not allowed")
+        found.append("a stay is in a zone that is not allowed")
     for each, places in enumerate(data.capacity.tolist()):
         if (data.present(zone, each) > places).any():
-            found.append(f"more stays than places in zone {each}")
+            found.append(f"zone {each} has more stays at a time than locations")
     return found

@@ -47,9 +47,7 @@ def solve(
     ModelError
         If the number of zones is not two.
     """
-    require(
-        len(data.capacity) == 2, "capacity", f"must be of two zones, is of {len(data.capacity)}"
-    )
+    require(len(data.capacity) == 2, "capacity", f"must have two zones, has {len(data.capacity)}")
     begin = perf_counter()
     near, far = data.cost_s.T
     forced_near, forced_far = np.isinf(far), np.isinf(near)

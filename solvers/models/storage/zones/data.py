@@ -134,9 +134,9 @@ def violations(data: Zones, plan: ZonePlan) -> list[str]:
     found = []
     slack = _TOLERANCE * max(1.0, float(data.pods.sum()))
     if (plan.standing < 0).any():
-        found.append("a negative number of pods")
+        found.append("the number of pods in a zone is negative")
     if (np.abs(plan.standing.sum(axis=1) - data.pods) > slack).any():
-        found.append("not every pod stands somewhere")
+        found.append("the pods of a class do not add up to their number")
     if (plan.standing.sum(axis=0) > data.places + slack).any():
-        found.append("more pods than places in a zone")
+        found.append("a zone has more pods than locations")
     return found

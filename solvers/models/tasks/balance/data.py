@@ -134,5 +134,5 @@ def violations(data: Balance, robot: NDArray[np.int64]) -> list[str]:
     if robot.shape == data.station.shape:
         sent = np.bincount(data.station[robot != LEFT], minlength=len(data.room))
         if (sent > data.room).any():
-            found.append("too many robots for a station")
+            found.append("a station gets more robots than it has room for")
     return found

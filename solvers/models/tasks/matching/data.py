@@ -77,13 +77,13 @@ def violations(data: Matching, robot: NDArray[np.int64]) -> list[str]:
     """
     robots, tasks = data.travel_s.shape
     if robot.shape != (tasks,) or not ((robot >= LEFT) & (robot < robots)).all():
-        return ["not one robot, or none, for every task"]
+        return ["robot must have a robot or -1 for each task"]
     done = robot != LEFT
     found = []
     if len(np.unique(robot[done])) < done.sum():
-        found.append("a robot with two tasks")
+        found.append("a robot gets two tasks")
     if np.isinf(data.travel_s[robot[done], np.flatnonzero(done)]).any():
-        found.append("a robot with a task it may not do")
+        found.append("a robot gets a task that it may not do")
     if np.isinf(data.leave_s[~done]).any():
-        found.append("a task left that must be done")
+        found.append("a task is left undone that must be done")
     return found

@@ -136,17 +136,20 @@ def violations(data: TaskSequence, routes: Routes) -> list[str]:
     done = [task for tasks in routes.tasks for task in tasks]
     stored = np.concatenate([routes.place, routes.robot_place])
     if len(routes.tasks) != data.robots or stored.shape != (data.tasks + data.robots,):
-        return ["not one route for every robot"]
+        return ["tasks and robot_place must have an entry per robot, and place one per task"]
     if not ((stored >= NONE) & (stored < data.places)).all():
-        return ["a place that does not exist"]
+        return ["a pod is stored at a location that does not exist"]
     found = []
     if sorted(done) != np.flatnonzero(routes.place != NONE).tolist():
-        found.append("not one robot for every task that is done")
+        found.append("exactly the tasks with a location must be done, each by one robot")
     if ((routes.robot_place != NONE) != data.carrying).any():
-        found.append("a pod that is not stored, or one that does not exist")
+        found.append("robot_place must be -1 if and only if the robot carries no pod")
     used = stored[stored != NONE]
     if len(np.unique(used)) < len(used):
-        found.append("two pods on one place")
+        found.append("two pods are stored at one location")
     if not found and not math.isfinite(objective(data, routes)):
-        found.append("a way that is not allowed, a window missed, or a task left that must be done")
+        found.append(
+            "a drive is not allowed, a latest time is missed, or a task is left undone that must "
+            "be done"
+        )
     return found

@@ -173,8 +173,8 @@ def test_violations_name_each_broken_rule() -> None:
         "not available": replace(good, pod_station=np.array([-1, -1, 0])),
         "no robot": replace(good, pod_robot=np.full(3, -1)),
         "fetches two": replace(good, pod_robot=np.array([0, 0, -1])),
-        "it does not need": replace(nothing(data), pod_robot=np.array([0, -1, -1])),
-        "serves nobody": replace(nothing(data), pod_station=np.array([0, -1, -1])),
+        "but needs none": replace(nothing(data), pod_robot=np.array([0, -1, -1])),
+        "serves no order": replace(nothing(data), pod_station=np.array([0, -1, -1])),
         "does not cover": replace(nothing(data), prospect=np.array([0, -1])),
     }
     assert violations(data, good) == []

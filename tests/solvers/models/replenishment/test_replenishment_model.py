@@ -215,9 +215,9 @@ def test_violations_name_what_is_wrong() -> None:
     data = Replenishment([[1.0], [-inf]], [0.0, 0.0], [2.0, 2.0], [2.0], [[1.0]], [1.0])
     both = Stocking(np.array([0, 0]), np.array([0]))
     assert violations(data, both) == [
-        "more bundles than fit into a pod",
-        "more bundles than fit into a station",
-        "a pair that is not allowed, or a bundle left that must be stored",
+        "a pod gets more bundles than fit into it",
+        "a station gets more bundles than fit into it",
+        "a pair is not allowed, or a bundle is left out that must be stored",
     ]
     away = Stocking(np.array([0, -1]), np.array([-1]))
-    assert violations(data, away) == ["a bundle in a pod that is not brought"]
+    assert violations(data, away) == ["a pod gets a bundle, but is brought to no station"]

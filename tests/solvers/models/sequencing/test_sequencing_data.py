@@ -59,7 +59,7 @@ def test_of_two_equal_pods_the_first_comes(method: object) -> None:
 def test_violations_name_each_broken_rule() -> None:
     data = Sequencing([[1, 1], [1, 1]], np.eye(2), 1, [True, False])
     plans = {
-        "open before": VisitSequence(np.array([0, 1]), np.array([0, -1])),
+        "open at the start": VisitSequence(np.array([0, 1]), np.array([0, -1])),
         "never opened": VisitSequence(np.array([0, 1]), np.array([-1, 5])),
         "never complete": VisitSequence(np.array([0, 1]), np.array([-1, 1])),
         "than slots at visit 0": VisitSequence(np.array([0, 1]), np.array([-1, 0])),

@@ -114,9 +114,9 @@ def test_invalid_input_is_refused_by_field() -> None:
 
 def test_violations_name_what_is_wrong() -> None:
     data = Placement([[1.0, inf], [1.0, 1.0]], [0.0, 0.0], [0.0, 0.0])
-    assert violations(data, np.array([0, 0])) == ["two pods on one place"]
-    assert violations(data, np.array([1, 0])) == ["a pod on a place that is not allowed"]
-    assert violations(data, np.array([0, 2])) == ["not one place for every pod"]
+    assert violations(data, np.array([0, 0])) == ["two pods are put at one location"]
+    assert violations(data, np.array([1, 0])) == ["a pod is put at a location that is not allowed"]
+    assert violations(data, np.array([0, 2])) == ["place must have a location for each pod"]
     assert violations(data, np.array([0, 1])) == []
 
 

@@ -187,9 +187,13 @@ def test_invalid_input_is_refused_by_field() -> None:
 def test_violations_name_what_is_wrong() -> None:
     data = Matching([[1.0, 1.0, inf]], [1.0, 1.0, inf])
     assert matching.violations(data, np.array([0, 0, -1])) == [
-        "a robot with two tasks",
-        "a task left that must be done",
+        "a robot gets two tasks",
+        "a task is left undone that must be done",
     ]
-    assert matching.violations(data, np.array([-1, -1, 0])) == ["a robot with a task it may not do"]
+    assert matching.violations(data, np.array([-1, -1, 0])) == [
+        "a robot gets a task that it may not do"
+    ]
     full = Balance([[1.0]], [1.0], [1.0], [0], [0], [1.0], [0])
-    assert balance.violations(full, np.array([0])) == ["too many robots for a station"]
+    assert balance.violations(full, np.array([0])) == [
+        "a station gets more robots than it has room for"
+    ]

@@ -354,13 +354,15 @@ def test_invalid_input_is_refused_by_field() -> None:
 
 def test_violations_name_what_is_wrong() -> None:
     data, none = simple(), np.array([-1])
-    assert violations(data, Routes(((0, 1),), np.array([1, 1]), none)) == ["two pods on one place"]
+    assert violations(data, Routes(((0, 1),), np.array([1, 1]), none)) == [
+        "two pods are stored at one location"
+    ]
     assert violations(data, Routes(((0,),), np.array([1, 0]), none)) == [
-        "not one robot for every task that is done"
+        "exactly the tasks with a location must be done, each by one robot"
     ]
     assert violations(data, Routes(((0, 1),), np.array([1, 2]), none)) == [
-        "a place that does not exist"
+        "a pod is stored at a location that does not exist"
     ]
     assert violations(data, Routes(((0, 1),), np.array([1, 0]), np.array([0])))[0].startswith(
-        "a pod that is not stored"
+        "robot_place must be -1"
     )
