@@ -37,7 +37,7 @@ impl Bound {
 enum Arrival {
     /// Not by driving.
     Never,
-    /// From storage places only: loaded robots on the first run of their way.
+    /// From storage locations only: loaded robots on the first run of their way.
     FromStorage,
     FromAisle,
     /// Perhaps by elevator.
@@ -280,7 +280,7 @@ impl Backward {
             _ if straight => false,
             Arrival::FromAisle => true,
             Arrival::FromStorage => {
-                // a loaded robot leaves no storage place but the one where it starts
+                // a loaded robot leaves no storage location but the one where it starts
                 let start = self.start.filter(|_| self.loaded);
                 start.is_none_or(|start| {
                     network.ahead(start, before).is_some_and(|(next, _)| next == node)

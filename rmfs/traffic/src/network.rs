@@ -252,7 +252,7 @@ impl Network {
     }
 
     /// Whether a robot on its way to `goal` may drive from `from` onto `to`: queue zones only if
-    /// bound for their station; storage places only if empty or if it is the goal; closed waypoints
+    /// bound for their station; storage locations only if empty or if it is the goal; closed waypoints
     /// only from a closed one.
     pub fn may_enter(&self, from: u32, to: u32, goal: u32, loaded: bool) -> bool {
         let zone = self.access[to as usize];

@@ -11,7 +11,7 @@ use crate::units::{Us, ceil_us, floor_us};
 
 /// Starts every move but the last as late as the next one and the reservations of others allow.
 ///
-/// The first move is left alone if the robot does not start from a storage place: a robot at a
+/// The first move is left alone if the robot does not start from a storage location: a robot at a
 /// station or in an aisle should leave soon.
 pub fn postpone(network: &Network, table: &Table, kind: &Kind, moves: &mut [Move]) {
     for i in (0..moves.len().saturating_sub(1)).rev() {

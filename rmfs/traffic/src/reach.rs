@@ -4,7 +4,7 @@ use crate::network::Network;
 
 /// The waypoints to which a loaded robot can drive from `source`.
 ///
-/// Queues are open to it, since any waypoint may be its goal; storage places and closed waypoints
+/// Queues are open to it, since any waypoint may be its goal; storage locations and closed waypoints
 /// are not.
 pub fn carried_from(network: &Network, source: u32) -> Vec<bool> {
     let ends = |node: u32| network.storage[node as usize] && node != source;

@@ -33,7 +33,7 @@ fn kind() -> Kind {
     }
 }
 
-/// Twelve waypoints in a grid with random one-way and two-way edges and random storage places: on
+/// Twelve waypoints in a grid with random one-way and two-way edges and random storage locations: on
 /// one floor (3 x 4), or on two (2 x 3 each) with an elevator in two of the corners.
 fn random_network(random: &mut Random, floors: usize) -> Network {
     let (columns, rows) = if floors == 1 { (4, 3) } else { (3, 4) };

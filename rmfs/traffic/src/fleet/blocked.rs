@@ -59,13 +59,13 @@ impl Fleet {
         self.schedule_retry();
     }
 
-    /// Sends a blocked robot that stands in the way of others to the nearest free storage place.
+    /// Sends a blocked robot that stands in the way of others to the nearest free storage location.
     pub(super) fn step_aside(&mut self, robot: u32) {
         self.settle(robot);
         let Fleet { network, kinds, robots, table, pathfinder, costs, stored, .. } = self;
         let state = &robots[robot as usize];
         let rests_well = network.storage[state.anchor as usize] || state.place.is_some();
-        // a grid map has no storage places: there is nowhere to look
+        // a grid map has no storage locations: there is nowhere to look
         if !state.moves.is_empty() || rests_well || !network.storage.contains(&true) {
             return;
         }

@@ -55,7 +55,7 @@ pub struct Query<'a> {
     pub heading: u8,
     /// Earliest departure; the robot is at rest at `start` then.
     pub ready: Us,
-    /// The goal; `NONE`: the nearest storage place that no robot holds and, for a loaded robot,
+    /// The goal; `NONE`: the nearest storage location that no robot holds and, for a loaded robot,
     /// without a pod.
     pub goal: u32,
     pub loaded: bool,

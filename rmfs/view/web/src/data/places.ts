@@ -1,4 +1,4 @@
-/** Where every pod is at any time: at a storage place, or carried by a robot. */
+/** Where every pod is at any time: at a storage location, or carried by a robot. */
 
 import type { Layout } from "./layout";
 import { Piece, type Track } from "./motion";

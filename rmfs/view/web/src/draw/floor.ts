@@ -1,4 +1,4 @@
-/** What never moves: floors, roads, storage places, queue zones, stations and elevators. */
+/** What never moves: floors, roads, storage locations, queue zones, stations and elevators. */
 
 import {
   BoxGeometry,

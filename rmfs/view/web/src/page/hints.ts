@@ -92,7 +92,7 @@ export function hintOfWaypoint(
 ): string {
   const { layout } = run;
   const kinds = [
-    ...(layout.isStorage[waypoint] ? ["storage place"] : []),
+    ...(layout.isStorage[waypoint] ? ["storage location"] : []),
     ...(layout.isQueue[waypoint] ? ["queue"] : []),
     ...(layout.header.elevators.flat().includes(waypoint) ? ["elevator"] : []),
   ];

@@ -57,7 +57,7 @@ export function legend(
         ...(pods === "plain" ? [pod] : []),
         ...stationKinds(header, theme),
         { colour: colours.elevator, label: "elevator" },
-        { colour: faint(colours.pod, theme).getStyle(), label: "storage place" },
+        { colour: faint(colours.pod, theme).getStyle(), label: "storage location" },
         { colour: faint(header.colours.queue_zone, theme).getStyle(), label: "queue zone" },
       ]),
     );

@@ -67,7 +67,7 @@ function counts({ header, podWaypoint, robotWaypoint, isStorage }: Layout): stri
   return [
     header.tiers.length > 1 ? `${header.tiers.length} tiers of ${sizes[0]}` : sizes[0],
     `${robotWaypoint.length} robots`,
-    `${podWaypoint.length} pods on ${places} storage places`,
+    `${podWaypoint.length} pods on ${places} storage locations`,
     ...[...kinds].map(([kind, count]) => `${count} ${kind} stations`),
   ].join(", ");
 }
