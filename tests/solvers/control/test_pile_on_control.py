@@ -218,7 +218,7 @@ def test_a_served_pod_may_go_on_to_another_station(
 
 
 def test_split_orders_are_not_also_covered_later() -> None:
-    with pytest.raises(InputError, match="later: invalid with split"):
+    with pytest.raises(InputError, match="later: cannot be combined with split"):
         choose(Problem.POA, {"name": "pile-on", "later": True, "split": True}, "test")
 
 
