@@ -42,9 +42,9 @@ SITES = {
     "default": ("default", 40.0),
     "default-32": ("default", 40.0),
     "study-32": ("pp-minimal", 30.0),
-    "study-tiers": ("pp-minimal", 30.0),
-    "large": ("large-arrivals", 30.0),
-    "study-128": ("pp-minimal", 30.0),
+    "study-tiers": ("pp-minimal", 20.0),
+    "large": ("large-arrivals", 20.0),
+    "study-128": ("pp-minimal", 20.0),
 }
 """Scenario and simulated seconds for every shipped layout: less where a run costs more."""
 
@@ -55,7 +55,7 @@ LIGHTER: dict[str, dict[str, Any]] = {
         "stock.initial_share": 0.3,
         "demand.orders": 200,
     },
-    "large-arrivals": {"replenishment.bundles": 100},
+    "large-arrivals": {"stock.initial_share": 0.3, "replenishment.bundles": 100},
 }
 """What makes a scenario cheaper: fewer units in stock, and as much traffic."""
 
