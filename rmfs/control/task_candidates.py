@@ -50,11 +50,12 @@ def tasks(
     at, kind, station = table[:, 0], table[:, 1], table[:, 2]
     index = np.array([robot.index for robot in robots], np.int64)
     works = kind == WORK
+    picks = np.array([isinstance(one, PickStation) for one in view.stations])
     columns: Columns = {
         "robot": index[at],
         "kind": kind,
         "station": station,
-        "pick": works & (station < len(view.pick_stations)),
+        "pick": works & picks[station],
         "away_s": np.zeros(len(table)),
         "units": np.zeros(len(table), np.int64),
         "robots": np.zeros(len(table), np.int64),

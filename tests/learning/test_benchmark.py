@@ -160,7 +160,7 @@ def test_the_mean_bound_counts_orders_due_in_the_measured_time() -> None:
     assert fewest_late_mean(orders, 2, 10.0) == pytest.approx(1.5)
 
 
-@pytest.mark.parametrize(("design", "arms"), [("learning", 36), ("learning-sites", 18)])
+@pytest.mark.parametrize(("design", "arms"), [("learning", 36), ("learning-sites", 20)])
 def test_designs_can_be_planned_with_seeds_that_no_training_has_seen(
     design: str, arms: int
 ) -> None:
