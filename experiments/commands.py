@@ -1,4 +1,4 @@
-"""`rmfs experiment`: plan, run, status, table, plot.
+"""The commands of `rmfs experiment`: plan, run, status, table, plot and others.
 
 These functions raise `InputError`; the command line prints it as one line and exits with code 2.
 """

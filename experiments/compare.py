@@ -49,7 +49,7 @@ class Side:
     inputs
         Known inputs as dotted keys and values.
     note
-        Missing runs of its experiment; empty if no runs are missing or it is not an experiment.
+        Description of missing runs of the experiment; empty if there are none, or no experiment.
     """
 
     name: str
@@ -60,7 +60,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Comparison of one side with the first one.
+    """Comparison of one side (`other`) with a side of the first source (`baseline`).
 
     Attributes
     ----------
@@ -97,8 +97,9 @@ def compare(sources: Sequence[str | Path], *, confidence: float = 0.95) -> list[
     ----------
     sources
         Run folders, folders of experiments, arms of these (`FOLDER#ARM`), or .csv and .parquet
-        tables of footprints. A single source with several arms is compared arm by arm with its
-        first arm; several sources with several arms are compared by the names of arms.
+        tables of footprints. If there is a single source, each of its arms is compared with the
+        first one. If there are several sources with several arms, arms of the same name are
+        compared.
 
     Raises
     ------
@@ -284,8 +285,8 @@ def chosen_columns(
 ) -> list[str]:
     """Return the columns to show.
 
-    These are the requested columns. If there are none, they are all reproducible columns that
-    differ (`everything`), or the main ones.
+    These are the requested columns. If none are requested, they are all reproducible columns that
+    differ (with `everything`) or the main ones (without it).
 
     Raises
     ------

@@ -50,5 +50,5 @@ def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
 
 
 def may_grow(plan: Plan) -> bool:
-    """Whether stages may add further runs."""
+    """Whether the stages of an experiment may add further runs."""
     return any(stage.until or stage.select or stage.arms for stage in plan.design.stages)

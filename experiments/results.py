@@ -77,15 +77,15 @@ def failed(plan: Plan, store: Store) -> pd.DataFrame:
 
 
 def failed_pairs(plan: Plan, store: Store) -> set[tuple[str, int]]:
-    """Return the failed runs that `failed` returns, as pairs of arm and replication."""
+    """Return the runs that `failed` returns, as pairs of arm and replication."""
     lost = failed(plan, store)
     return set(zip(lost["arm"], lost["replication"].astype(int), strict=True))
 
 
 def assigned(plan: Plan, store: Store) -> pd.DataFrame:
-    """Return the finished runs of a plan, with its arms and factors, in its order.
+    """Return the finished runs of a plan, with arms and factors, in the order of the plan.
 
-    Rows with outdated inputs, and of seeds that are no longer part of the plan, are excluded.
+    Runs with outdated inputs, and runs of seeds that are no longer in the plan, are excluded.
     """
     rows = store.rows()
     by_digest = {arm.digest: arm for arm in plan.arms}
@@ -109,10 +109,11 @@ def assigned(plan: Plan, store: Store) -> pd.DataFrame:
 
 
 def reproducible_table(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the columns that are equal whenever an experiment is repeated, sorted by arm and seed.
+    """Return the columns that are equal whenever an experiment is repeated.
 
-    Measured columns (such as wall times) and the columns on how a run was made are excluded. Two
-    experiments are identical if these tables, written as CSV, are equal byte for byte.
+    Rows are sorted by arm and seed. Measured columns (such as wall times) and the columns on how a
+    run was made are excluded. Two experiments are identical if these tables, written as CSV, are
+    equal byte for byte.
     """
     gone = {*names("footprint")} - {*reproducible("footprint")}
     gone |= {column.name for column in learnt() if column.measured}

@@ -2,7 +2,8 @@
 
 Each case is run several times in this process on one core, without checker and trace. A fixed
 reference loop is timed in between, so that machines can be compared. The figure to quote is
-simulated seconds per wall second; to compare machines, multiply it by the seconds of the loop.
+simulated seconds per wall second; to compare machines, multiply it by the seconds that the loop
+takes.
 """
 
 from __future__ import annotations

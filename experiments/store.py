@@ -46,7 +46,7 @@ ORIGIN = ("run", "arm_digest", "replication", "arm", "design", "design_hash")
 
 CODE = ("rmfs_version", "git_commit", "code")
 PROVENANCE = (*CODE, "host", "elapsed_s", "cpu_s", "finished")
-"""Columns of a stored row, after the footprint, on how it was made; not reproducible."""
+"""Columns of a stored row, after the footprint, on how the run was made; not reproducible."""
 
 COLUMNS = [*ORIGIN, *names("footprint"), *PROVENANCE]
 """Columns of a stored row."""

@@ -25,7 +25,7 @@ LARGEST = 1e9
 SMALLEST = 1e-9
 """Smallest absolute value of a parameter that is not 0; its reciprocal stays within `LARGEST`."""
 LARGEST_SEED = 2**63 - 1
-"""Largest seed: a signed 64-bit integer."""
+"""Largest seed: the largest signed 64-bit integer."""
 
 
 class Model(pydantic.BaseModel):

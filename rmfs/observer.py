@@ -28,7 +28,7 @@ class MotionCounts(TravelTimes, Protocol):
     """The part of the traffic model that counts motion, starting after the warm-up."""
 
     def motion(self) -> dict[str, NDArray[Any]]:
-        """Return distances (m) and times (s) by name, each of shape (R,)."""
+        """Return arrays of distances (m) and times (s), one value per robot, by name."""
         ...
 
     def heat(self) -> dict[str, NDArray[Any]]:
@@ -40,11 +40,11 @@ class MotionCounts(TravelTimes, Protocol):
         ...
 
     def edges(self) -> dict[str, NDArray[Any]]:
-        """Return the edges used and their passages as columns by name."""
+        """Return the edges used, and how often robots passed them, as columns by name."""
         ...
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return energies by name, such as energy drawn and charged, each of shape (R,), in J.
+        """Return arrays of energies in J, such as drawn and charged, one value per robot, by name.
 
         May be called only if the scenario models energy.
         """
@@ -127,7 +127,10 @@ class Observer:
         """Report that POA assigned an order to a pick station (`station`, `assigned_s`)."""
 
     def order_queued(self, order: Order) -> None:
-        """Report that an order of the backlog joined a station's pool (`order.queued_at`)."""
+        """Report that an order of the backlog was reserved for a station (`order.queued_at`).
+
+        Such an order is in the station's pool: it has no slot yet.
+        """
 
     def picks_changed(self, time_s: float, robot: int) -> None:
         """Report a change of a robot's pick task: requests were bound to its pod, or reopened."""
@@ -166,7 +169,7 @@ class Observer:
         """Report that an order, or a part of one, has left its pick station and freed the slot."""
 
     def tote_held(self, station: int, from_s: float, to_s: float) -> None:
-        """Report that an order, or a part, could not leave a pick station during [from_s, to_s)."""
+        """Report that an order, or part of one, could not leave a station during [from_s, to_s)."""
 
     def order_packed(self, parcel: Parcel) -> None:
         """Report that an order is packed (`parcel.packed_s`); only in scenarios with packing."""
@@ -175,10 +178,13 @@ class Observer:
         """Report that a replenishment order (bundle) joined the backlog (`bundle.created_s`)."""
 
     def bundle_promised(self, bundle: Bundle) -> None:
-        """Report that RPS chose a bundle's pod (`bundle.pod`) but has not released the choice."""
+        """Report that RPS chose a bundle's pod (`bundle.pod`).
+
+        ROA and TA act on the choice only after its release (`bundles_released`).
+        """
 
     def bundles_released(self, pod: int) -> None:
-        """Report that RPS released the bundles promised to a pod."""
+        """Report that RPS released the bundles of a pod: ROA and TA may now act on its choice."""
 
     def bundle_sent(self, bundle: Bundle) -> None:
         """Report that ROA chose the station of a bundle (`bundle.station`)."""
@@ -230,7 +236,7 @@ class Observer:
         """
 
     def rule_decided(self, problem: str, time_s: float) -> None:
-        """Report that a controller with an optimiser made a decision by its own rule instead."""
+        """Report that a controller with an optimiser made a decision by its own rule."""
 
     def optimiser_asked(self, call: Call) -> None:
         """Report that a controller asked an optimiser a question."""

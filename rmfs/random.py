@@ -1,6 +1,6 @@
 """A tree of named random streams, grown from one seed.
 
-Each stream is a child of the run's seed with a fixed number. Adding a stream therefore never
+Each stream is derived from the run's seed and its own fixed number. Adding a stream therefore never
 changes another, and two arms of an experiment with the same seed face the same demand.
 """
 
@@ -46,8 +46,8 @@ def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:
     seed
         The run's (or layout's) seed, 0 or greater.
     path
-        Further numbers below the stream, for example the ordinal of an order; each path has a
-        stream of its own.
+        Further numbers that select a substream, for example the ordinal of an order; each path
+        yields a sequence of its own.
     """
     sequence = np.random.SeedSequence(seed, spawn_key=(int(stream), *path))
     return np.random.Generator(np.random.PCG64(sequence))

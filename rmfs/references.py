@@ -1,6 +1,6 @@
 """User-defined classes, referenced as `module:Class` or `path/to/file.py:Class`, or given directly.
 
-Modules are searched on the Python path and then in the working directory. A file is imported under
+Modules are looked up on the Python path, then in the working directory. A file is imported under
 a module name that encodes its path (`file:/mine/rules%2Epy`), so that files of the same name do not
 clash and pickled objects find their class in another process.
 """

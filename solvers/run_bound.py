@@ -60,10 +60,11 @@ def units_per_h_keeping_stock(
     duration_s: float,
     fleets: Collection[int],
 ) -> dict[int, float]:
-    """Return an upper bound on units per hour for each fleet, for runs that store what they pick.
+    """Return an upper bound on units per hour for each fleet, for runs that keep their stock.
 
-    Not even a controller that knew all future orders could exceed it: the bound holds for any
-    choice of orders, pods and places. Each bundle has the number of units given by its SKU.
+    Such a run stores at least as many units as it picks. Not even a controller that knew all future
+    orders could exceed the bound, which holds for any choice of orders, pods and places. Each
+    bundle has the number of units given by its SKU.
 
     Parameters
     ----------
@@ -89,7 +90,7 @@ def units_per_h_keeping_stock(
 def run_bound(
     layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float
 ) -> RunBound | None:
-    """Return the model's input; None if some handling takes no time, so that there is no bound.
+    """Return the bound's input; None if some handling takes no time, so that there is no bound.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""`rmfs experiment calibrate`."""
+"""The command `rmfs experiment calibrate`."""
 
 from __future__ import annotations
 
@@ -68,9 +68,10 @@ def calibrate(
 ) -> None:
     """Find the arrival rate at which a given share of orders is on time, with a stated confidence.
 
-    Any other numerical parameter and any other column of the footprint can be chosen, if the mean
-    of the column rises or falls monotonically with the parameter. The command can be interrupted
-    and repeated. Exits with code 1 if the maximum number of runs was too small.
+    Another numerical parameter can be chosen instead of the arrival rate, and another column of the
+    footprint instead of the share, if the mean of the column rises or falls monotonically with the
+    parameter. The command can be interrupted and repeated. Exits with code 1 if the maximum number
+    of runs was too small.
     """
     from rmfs.config import parse_override
     from rmfs.experiments.calibration.procedure import Goal
@@ -111,7 +112,7 @@ def calibrate(
 
 
 def verdict(found: Calibration, key: str, column: str) -> str:
-    """Return the result as a sentence."""
+    """Return the result of a calibration as a sentence."""
     goal = found.goal
     if not found.found:
         return (
@@ -127,7 +128,7 @@ def verdict(found: Calibration, key: str, column: str) -> str:
 
 
 def steps_table(found: Calibration, key: str, column: str) -> Table:
-    """Return the steps as a table, with one row per level evaluated."""
+    """Return the steps of a calibration as a table, with one row per level evaluated."""
     import pandas as pd
 
     from rmfs.experiments.tables import HALF, Table

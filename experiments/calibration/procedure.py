@@ -44,7 +44,7 @@ MOST_LOOKS = 12
 """Maximum number of levels that the search evaluates, in addition to both ends of the range."""
 
 DOUBLINGS = 3
-"""Number of times the seeds are doubled before the target is assumed to lie outside the range."""
+"""Number of times the number of seeds is doubled before the target is taken to be out of range."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Step:
     Attributes
     ----------
     phase
-        `end` of the range, `search`, or `test`.
+        Purpose of the evaluation: `end` (an end of the range), `search` or `test`.
     first_seed, seeds
         First seed and number of consecutive seeds.
     mean, half_width
@@ -308,7 +308,7 @@ def calibrate(goal: Goal, respond: Respond, watch: Callable[[Step], None] = prin
     Raises
     ------
     InputError
-        If the target does not lie between the means at both ends, or a response is nan.
+        If the target does not lie between the means at the ends of the range, or a response is nan.
     """
     return _Procedure(goal, respond, watch).run()
 

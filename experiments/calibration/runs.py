@@ -1,4 +1,4 @@
-"""The response of a calibration: a footprint column of runs, stored like an experiment."""
+"""The response of a calibration: a footprint column of runs that are stored like an experiment."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Runs:
             raise InputError(f"column {self.column}: not a number of the footprint{hint}")
 
     def plan(self, level: float, seeds: Sequence[int]) -> Plan:
-        """Return the plan of the runs at a level.
+        """Return the plan of the runs at a level of the varied parameter.
 
         Raises
         ------

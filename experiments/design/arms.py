@@ -1,4 +1,4 @@
-"""Arms from factors, lists and files.
+"""The arms of a design, made from factors, lists and files.
 
 A factor is either a parameter (`layout.robots`, `controllers.psa`, or just `scenario` for the whole
 file) with its levels, or a user-defined name, each of whose levels sets several parameters.
@@ -49,13 +49,13 @@ class Arm:
     Attributes
     ----------
     name
-        Unique in its design.
+        Name, unique in the design.
     levels
         For each factor the displayed level: a number, a string, a boolean, or None.
     inputs
         Name or path of layout, scenario and controllers.
     overrides
-        Parameters that replace those of these files, as pairs of path and value.
+        Parameters that replace values in these files, as pairs of path and value.
     pacing
         How simulated time accounts for the computation of optimisers.
     digest
@@ -129,7 +129,7 @@ def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
 
 
 def factor_names(keys: Iterable[str]) -> dict[str, str]:
-    """Return a short name for each factor: as few words from the end of its path as are unique.
+    """Return a short name for each factor: the shortest end of its path that is unique.
 
     A final `name` (of a rule) is left out: `controllers.psa.name` becomes `psa`.
     """
@@ -388,7 +388,7 @@ def _arm_name(combination: tuple[Level, ...], keys: list[str]) -> str:
 
 
 def anchored(given: str, folder: Path) -> str:
-    """Resolve a path relative to the design's folder; leave names and other paths unchanged."""
+    """Resolve the path of a file in the design's folder; leave other paths and names unchanged."""
     beside = folder / given
     try:
         return str(beside) if beside.is_file() else given

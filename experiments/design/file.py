@@ -49,7 +49,7 @@ Measure = Annotated[str, pydantic.AfterValidator(_measure)]
 
 
 class Strict(Model):
-    """Base of the tables of a design file: numbers must be written as numbers."""
+    """Base class of the tables of a design file: numbers must be written as numbers."""
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
 
@@ -212,7 +212,7 @@ class DesignFile(Strict):
         return self
 
     def seeds_of(self, stage: Stage | None = None) -> list[int]:
-        """Return the seeds that every arm gets in a stage: its own, or else those of the design."""
+        """Return the seeds that every arm gets in a stage: the stage's, or else the design's."""
         for given in (stage, self):
             if given is not None and given.seeds is not None:
                 return given.seeds
@@ -221,7 +221,7 @@ class DesignFile(Strict):
         return []
 
     def all_stages(self) -> list[Stage]:
-        """The stages; a design without stages has one with all runs."""
+        """The stages; a design without stages has a single stage with all runs."""
         return self.stages or [Stage(name="all")]
 
 

@@ -61,7 +61,9 @@ def main_effects(levels: Sequence[Sequence[object]]) -> NDArray[np.float64]:
 
 
 def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]:
-    """Choose rows of a model matrix by exchanges that increase the determinant of the information.
+    """Choose informative rows of a model matrix.
+
+    Rows are exchanged as long as this increases the determinant of the information matrix.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ class Plan:
     measures
         The user's measures, as described by `rmfs.measure.registry.described`.
     source
-        The file from which it was read.
+        The file from which the design was read.
     """
 
     design: DesignFile
@@ -181,7 +181,7 @@ def plan(
         Entries that replace or extend those of the design's table `base`.
     replications
         Number of seeds, instead of the design's own; only for designs without stages. If the design
-        lists its seeds, these are the first ones of the list.
+        lists its seeds, the first ones of the list are used.
     without
         Names of arms to leave out.
     told

@@ -1,8 +1,8 @@
 """Loading the inputs of an arm, and a digest of everything that determines its runs.
 
 The digest depends on content, not on text: a comment in a file or another name of a layout does not
-change it, but one more robot, another rule or a changed SKU file does. Runs are
-stored under their digest, so that finished runs are found again and outdated ones are detected.
+change it, but one more robot, another rule or a changed SKU file does. Runs are stored under their
+digest, so that finished runs are found again and outdated ones are detected.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class Resolver:
         check
             Whether the traces of its runs are checked.
         seeded
-            Parameters that take the seed of the run.
+            Parameters whose value is the seed of the run.
         """
         found: dict[str, Any] = {}
         problems: list[str] = []
@@ -152,7 +152,7 @@ _LOADERS: dict[str, Callable[..., Any]] = {
 
 
 def of_pacing(overrides: Overrides) -> Overrides:
-    """Return the overrides of the pacing."""
+    """Return those overrides that concern pacing."""
     return [(path, value) for path, value in overrides if path[0] == "pacing"]
 
 
@@ -182,7 +182,7 @@ def file_hash(path: Path) -> str:
 
 
 def file_name(path: Path) -> str:
-    """Return the name of an input file in a plan, independent of the machine for shipped files."""
+    """Return an input file's name in a plan; for shipped files, it is the same on all machines."""
     if path.is_relative_to(instances.ROOT):
         return f"{_SHIPPED}{path.relative_to(instances.ROOT).as_posix()}"
     return str(path.absolute())

@@ -45,7 +45,7 @@ class Schedule:
     Attributes
     ----------
     runs
-        Pairs of arm and replication, without duplicates, in the order in which they should be run.
+        These runs, without duplicates, in the order in which they should be made.
     complete
         Whether no further runs will be added.
     remarks
@@ -77,7 +77,7 @@ def schedule(
     Parameters
     ----------
     results
-        Finished runs: columns `arm`, `replication` and those of `columns`.
+        Finished runs: columns `arm`, `replication` and those that `columns` returns.
     failed
         Failed runs, as pairs of arm and replication; no results are expected from them.
     """

@@ -30,8 +30,7 @@ def intervals(
 ) -> None:
     """Draw one row per arm: a dot for each seed, the mean and its confidence interval.
 
-    The dot of a seed has the same height within the row of every arm, so that pairs can be
-    recognised.
+    In every row, the dot of a given seed has the same height, so that pairs can be recognised.
 
     Parameters
     ----------

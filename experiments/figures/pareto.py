@@ -101,7 +101,7 @@ def pareto(
 
 
 def goal_of(column: str, stated: Goal | None = None) -> Goal:
-    """Return the goal stated for a column, else that of the data dictionary.
+    """Return the goal stated for a column or, if none is stated, that of the data dictionary.
 
     Raises
     ------

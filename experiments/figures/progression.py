@@ -58,9 +58,10 @@ def progression(
 
 
 def per_bin(series: pd.DataFrame, column: str, bin_s: float) -> pd.DataFrame:
-    """Return the rate per hour of every run in bins of time: `arm replication hour rate`.
+    """Return the rate per hour of every run in bins of time.
 
-    `hour` is the middle of the bin; an incomplete last bin is left out.
+    The columns are `arm`, `replication`, `hour` (the middle of the bin) and `rate`. An incomplete
+    last bin is left out.
     """
     require(series, "arm", "replication", "time_s", "interval_s", column)
     middle = series["time_s"] - series["interval_s"] / 2

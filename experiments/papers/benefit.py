@@ -56,7 +56,7 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
 
 
 def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = COLUMNS) -> Table:
-    """Return the means of every group of runs with intervals, decision times, shares and bounds.
+    """Return a row for each group of runs: means with intervals, decision times, shares and bounds.
 
     The shares are the four columns `*_decision_share` of the footprint.
 
@@ -164,7 +164,7 @@ def publish_added(
     name: str,
     columns: Sequence[str] = (*RATES, *EFFORT),
 ) -> None:
-    """Publish the table `of_optimiser` as `name`-optimiser, if there are arms with start rules."""
+    """Publish the table of `of_optimiser` as NAME-optimiser, if there are arms with start rules."""
     if frame[CONTROLLERS].str.endswith(START).any():
         study.publish(of_optimiser(frame, groups, columns), f"{name}-optimiser", columns)
 

@@ -162,7 +162,7 @@ def compared(table: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     table
-        As `with_gaps` returns it, with sizes.
+        The table that `with_gaps` returns, with the column `size`.
     """
     areas = integrals(table)
     areas["size"] = areas["question"].map(table.groupby("question")["size"].first())

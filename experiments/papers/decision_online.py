@@ -35,7 +35,13 @@ SIZES = ("medium", "real", "double")
 
 
 def planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]]:
-    """Return what is asked when planning: the number of steps per station, by that of stations."""
+    """Return a function that gives the method and limits for a planning question.
+
+    Parameters
+    ----------
+    steps
+        Number of steps per station, as a function of the number of stations.
+    """
 
     def asked(decision: Decision) -> dict[str, Any]:
         stations = decision.sizes["S"]
@@ -52,7 +58,13 @@ def _routed(method: str, work_s: float) -> Callable[[Decision], dict[str, Any]]:
 
 
 def searched(steps: int) -> Callable[[Decision], dict[str, Any]]:
-    """Return what is asked when routing by neighbourhood search: the number of steps per task."""
+    """Return a function that gives the method and limits for a routing question.
+
+    Parameters
+    ----------
+    steps
+        Number of steps of the neighbourhood search per task.
+    """
 
     def asked(decision: Decision) -> dict[str, Any]:
         limits = Limits(iterations=steps * decision.sizes["T"])

@@ -2,9 +2,10 @@
 
 The inputs correspond to RAWSim-O's instances `fastlane`: layout and controllers are the same, and
 SKUs have the same distribution. Ten seeds are compared with one measured run of RAWSim-O for each
-arm. RAWSim-O's robots drive by FAR and wait for the next step of the simulation before every hop,
-lift and set-down. Here they drive by time windows, by FAR, and by FAR with the mean of that wait
-added to turning and lifting times. This separates the effect of the rules from that of driving.
+arm. RAWSim-O plans paths by FAR, and its robots wait for the next step of the simulation before
+every hop, lift and set-down. Here paths are planned by the planner `time-windows`, by FAR, and by
+FAR with the mean of that wait added to turning and lifting times. This separates the effect of the
+rules from that of driving.
 """
 
 from __future__ import annotations
@@ -69,8 +70,8 @@ def gain(frame: pd.DataFrame, columns: Sequence[str] = COLUMNS) -> Table:
     made = rows_frame(rows, "gain of the fast lane, %")
     caption = (
         "Gain of the fast lane, paired by seed, in percent with 95% confidence intervals of "
-        "the mean; a single further run lies within the mean +- the value under one run with "
-        "a probability of 95%."
+        "the mean. With a probability of 95%, the gain in a single further run differs from the "
+        "mean by no more than the value under one run."
     )
     return Table(made, dict.fromkeys(next(iter(rows.values())), 2), caption)
 

@@ -2,9 +2,9 @@
 
 The study shows units per hour over the size of the fleet at the small site, with the capacity of
 the stations and the proven bound, and the smallest fleet with which each controller reaches 95 % of
-that capacity. It takes about 0.2 CPU hours. With `--later`, the third hour is measured instead,
-because a small fleet initially picks stock that it has no time to replenish, and orders that arrive
-over time are included (0.2 CPU hours).
+that capacity. It takes about 0.2 CPU hours. With `--later` (0.2 CPU hours), orders that arrive over
+time are included, and the third hour is measured instead, because a small fleet initially picks
+stock that it has no time to replenish.
 """
 
 from __future__ import annotations

@@ -54,7 +54,9 @@ def areas(layout: Layout) -> NDArray[np.str_]:
 
 
 def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
-    """Return waypoints, visits per waypoint, and shares of visits and waiting, per seed and area.
+    """Return numbers of waypoints, visits per waypoint, and shares, per seed and area.
+
+    The shares are those of the visits and of the waiting time.
 
     Parameters
     ----------

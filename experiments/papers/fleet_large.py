@@ -1,10 +1,11 @@
 """The number of robots that the large site needs: rules, planned visits, and the start rule.
 
-The study shows units per hour over the size of the fleet, with the stock level kept, and a bound
-that holds even for controllers that know all future orders (docs: bounds); the smallest fleet that
-reaches 95 % of the stations' capacity; and the gain of the search over the start rule of the same
-controller, paired by seed. With `--later`, the third hour is measured, with answers paced by their
-work. `--bound` only prints the bound and runs nothing.
+The study shows units per hour over the size of the fleet, with the stock level kept constant, and a
+bound that holds even for controllers that know all future orders (docs: bounds); the smallest fleet
+that reaches 95 % of the stations' capacity; and the gain of the search over the start rule of the
+same controller, paired by seed. With `--later`, the third hour is measured, and each answer takes
+simulated time in proportion to its computation (pacing `work`). `--bound` only prints the bound and
+runs nothing.
 """
 
 from __future__ import annotations
@@ -39,9 +40,9 @@ RULES = "default rules"
 
 
 def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
-    """Return bounds for runs that store what they pick, by fleet size, and the stations' capacity.
+    """Return bounds for runs that keep their stock, by fleet size, and the stations' capacity.
 
-    All are in units per hour.
+    All are in units per hour. The runs considered store at least as many units as they pick.
     """
     arm = design.arms[0]
     own = {
@@ -73,9 +74,9 @@ def bounds(found: Mapping[int, float], limit: float) -> Table:
         for robots in fleets
     }
     caption = (
-        "Upper bound on units per hour of any controller that stores what it picks, whatever "
-        "it knows (docs: bounds). With more robots than in the last row, the bound does not "
-        "change."
+        "Upper bound on units per hour of any controller that stores at least as many units as "
+        "it picks, even if it knows all future orders (docs: bounds). With more robots than in "
+        "the last row, the bound does not change."
     )
     decimals = {("units_per_h", ""): 0, ("station_share", ""): 3}
     return Table(rows_frame(rows, "robots"), decimals, caption)

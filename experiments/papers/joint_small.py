@@ -1,12 +1,12 @@
 """Joint decisions on orders, pods and robots at a small site (Jiao, Huang, Song, Li, Wang 2025).
 
-In that paper, a model decides on pick orders, pods and robots jointly (M1G); a heuristic (HADGS)
-solves the same problem. The paper reports 16 % more orders per hour and 30 % less distance per
-order than with sequential rules (SEQU). Here the site is rebuilt as far as it is published, with
+In that paper, a model (M1G) decides on pick orders, pods and robots jointly; a heuristic (HADGS)
+solves the same problem. For M1G, the paper reports 16 % more orders per hour and 30 % less distance
+per order than for sequential rules (SEQU). Here the site is rebuilt as far as it is published, with
 ten and six robots, and with a backlog of 100 orders as in the paper as well as with orders that
 arrive independently of the controllers. M1G and HADGS are compared with the joint controllers of
-rmfs, with whole orders and with split orders (Xie, Thieme, Krenzler, Li 2021). With six robots, so
-that robots are scarce, the table also contains a corrected M1G, pile-on with a value per unit, and
+rmfs, with whole orders and with split orders (Xie, Thieme, Krenzler, Li 2021). For six robots, when
+robots are scarce, the table also contains a corrected M1G, `pile-on` with a reward per unit, and
 the start rule of every optimiser. The study takes about 0.5 CPU hours.
 """
 

@@ -26,11 +26,11 @@ def fewest_late(
     work_s: NDArray[np.float64],
     stations: int,
 ) -> int:
-    """Return how many of N orders are late at least.
+    """Return a lower bound on the number of late orders.
 
-    The number of orders on time is at most the optimum of a linear programme: for each interval
-    from an arrival to a due time, the work of the orders on time within it is at most the length of
-    the interval times the number of stations.
+    The number of orders on time is at most the optimum of a linear program: for each interval from
+    an arrival to a due time, the orders that arrive and are due within the interval, and are on
+    time, need at most as much work as the length of the interval times the number of stations.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def fewest_late(
     Raises
     ------
     RuntimeError
-        If the linear programme is not solved.
+        If the linear program is not solved.
     """
     count = len(released_s)
     if not count:

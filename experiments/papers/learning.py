@@ -1,11 +1,11 @@
 """Comparison of look-ahead, trained linear rules and optimisers with the other rules.
 
 The study has four regimes of the small site, with seeds not used in training. With `--sites`, it
-has one regime each of the default and the large site. Every arm is compared with the default rules
-and with the best rule of its regime. The measure is units picked or, in the regimes with arrivals
-and tight due times, orders completed late or overdue at the end. p values are corrected by Holm's
-method over all arms of a regime. A bound that holds for all controllers, whatever they know, shows
-how much room there is.
+has one regime of the default site and one of the large site instead. Every arm is compared with the
+default rules and with the best rule of its regime. The measure is units picked or, in the regimes
+with arrivals and tight due times, orders completed late or overdue at the end. p values are
+corrected by Holm's method over all arms of a regime. A bound that holds for all controllers,
+whatever they know, shows how much room there is for improvement.
 """
 
 from __future__ import annotations
@@ -62,19 +62,19 @@ def with_goals(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def most_units(runs: pd.DataFrame) -> float:
-    """Return the units that no controller can exceed in a run of these arms."""
+    """Return an upper bound on the units that any controller can pick in a run of these arms."""
     return float((runs["units_per_h_bound"] * runs["duration_s"]).max() / 3600.0)
 
 
 def fewest_late_mean(orders: pd.DataFrame, stations: int, unit_s: float) -> float:
-    """Return the mean number of orders that every controller completes late or leaves overdue.
+    """Return a lower bound on the mean number of orders that are completed late or left overdue.
 
     Parameters
     ----------
     orders
         Table `orders` of runs of one arm, with a column `replication` and the measured time of each
-        run in `start_s` and `end_s`. Orders due in that time are considered; an order that is done
-        earlier with the arm is not in the table, which weakens the bound but keeps it valid.
+        run in `start_s` and `end_s`. Orders due in that time are considered; an order that the arm
+        completed before that time is not in the table, which weakens the bound but keeps it valid.
     stations
         Number of pick stations.
     unit_s
@@ -93,14 +93,15 @@ def fewest_late_mean(orders: pd.DataFrame, stations: int, unit_s: float) -> floa
 def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
     """Return means, and gains over the default rules and the best rule, by regime and arm.
 
-    A gain is positive if more units are picked or, with arrivals, fewer orders are late.
+    A gain is positive if more units are picked or, where late orders are the measure, fewer orders
+    are late.
 
     Parameters
     ----------
     frame
         Results of the design, with `with_goals`.
     at_best
-        Bound on the goal of each regime: on units picked from above, on late orders from below.
+        Bound of each regime: an upper bound on units picked, or a lower bound on late orders.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for name, runs in frame.groupby(REGIME, sort=False):
@@ -144,9 +145,10 @@ def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
         "Means over held-out seeds with 95% confidence intervals (Student's t). goal: units picked "
         "per run or, in the regimes with arrivals, orders completed late or overdue at the end. "
         "bound: no controller can pick more units, or have fewer late orders, whatever it knows; "
-        "share of the room: gain on the default rules / their distance from the bound. Gains are "
-        "paired by seed; p: paired t test after Holm's correction within the regime. TA tried: TA "
-        "rollout. bundles_per_h: a controller that stores fewer bundles than others uses up stock."
+        "share of the room: gain on the default rules divided by the distance of these rules from "
+        "the bound. Gains are paired by seed; p: paired t test after Holm's correction within the "
+        "regime. TA tried: look-ahead by TA rollout. bundles_per_h: a controller "
+        "that stores fewer bundles than others uses up stock."
     )
     return Table(made, decimals, caption)
 

@@ -3,7 +3,8 @@
 Every arm is a method with its limit of work. Its offline gap is the mean primal gap to the best
 known value over the library's questions of its family, answered as the controller of the arm would
 answer them. Online, it is simulated with the same seeds as the other arms of the family. If lower
-gaps come with more units, fewer late orders and less driving, the objective is a good proxy.
+gaps come with more units, fewer late orders and less driving, the objective of the questions is a
+good proxy for these measures.
 """
 
 from __future__ import annotations

@@ -155,7 +155,7 @@ def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tupl
 
 
 def rows(study: Study, instance: Instance, name: str) -> Rows:
-    """Return the rows of one layout: the methods by orders per hour, with RAWSim-O's figures."""
+    """Return the rows of one layout: methods sorted by orders per hour, with RAWSim-O's figures."""
     frame = study.frame
     differences = against(frame, "orders_per_h", OURS, by=METHOD)
     made: Rows = {}

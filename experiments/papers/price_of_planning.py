@@ -3,8 +3,8 @@
 The design `price-of-planning` varies how long the plan of a trip takes, on two layouts with five
 fleets. All robots have one planner. The study publishes the change of units per hour compared with
 plans that take no time, paired by seed, and for each fleet the time from which planning costs
-throughput. A design of your own (`--design`) can have other modes and invocations, and a planner
-for each robot (labels that end in ", each").
+throughput. A design of your own (`--design`) can have other modes and invocations of planning
+(docs: path-planning), and a planner for each robot (labels that end in ", each").
 """
 
 from __future__ import annotations
@@ -70,16 +70,17 @@ def losses(frame: pd.DataFrame) -> Table:
 
 
 def seconds(planning: str) -> float:
-    """Return the constant time of a plan in s; nan for other kinds of planning."""
+    """Return the time of a plan in s, if it is constant in this kind of planning, otherwise nan."""
     number, _, rest = planning.removesuffix(", each").partition(" ")
     return float(number) if rest == "s" else nan
 
 
 def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float]:
-    """Return the time of a plan from which planning costs throughput, and the one before it, in s.
+    """Return the time of a plan from which planning costs throughput, and the next shorter, in s.
 
-    It costs throughput from the shortest time at which, and at all longer ones, the interval of the
-    change lies below zero. nan if there is no such time, or none before it.
+    Planning costs throughput from the shortest time for which, as for all longer times in the
+    design, the confidence interval of the change lies below zero. Where there is no such time, or
+    no shorter one, nan is returned.
 
     Parameters
     ----------
@@ -125,11 +126,12 @@ def thresholds(frame: pd.DataFrame) -> Table:
     decimals |= {("plans per hour", ""): 0}
     decimals |= {column: 1 for row in rows.values() for column in row if ", s" in column[0]}
     caption = (
-        "Where planning begins to cost. Units and plans per hour are those of plans that take no "
-        "time; busy at: time of a plan at which one planner would be busy all the time with as "
-        "many plans. Loss from: shortest constant time of a plan of those studied from which on "
-        "units per hour are significantly fewer (95% confidence interval of the paired change "
-        "below zero), with one planner for all robots; each: with one for each robot."
+        "When planning begins to cost throughput. Units and plans per hour are those of plans "
+        "that take no time; busy at: 3600 s divided by the plans per hour, that is, the time per "
+        "plan at which a single planner would never be idle. Loss from: the shortest time per "
+        "plan, of those studied, from which on fewer units per hour are picked (the 95% "
+        "confidence interval of the paired change lies below zero); one planner serves all "
+        "robots. each: every robot has its own planner."
     )
     return Table(rows_frame(rows, "fleet"), decimals, caption)
 

@@ -207,10 +207,11 @@ def even(frame: pd.DataFrame) -> Table:
         "Where split orders break even with whole ones. slots: number of slots of the wall "
         "from which on splitting picks more units per hour, with a bootstrap interval over "
         "seeds; the smallest wall of the design may stand for smaller ones, and inf means "
-        "none. packer: time per additional tote of an order at which pickers and packers "
-        "together work as long per unit. way: time to the wall at which orders are packed as "
-        "early on average; negative: never. These two are for any number of slots, 95% "
-        "confidence intervals (Student's t)."
+        "none. packer: packer's time per additional tote at which pickers and packers "
+        "together need the same time per unit as with whole orders. way: time to the wall at "
+        "which orders are packed on average as early as with whole orders; a negative time means "
+        "never. packer and way are for a wall with any number of slots, with 95% confidence "
+        "intervals (Student's t)."
     )
     return Table(rows_frame(rows, f"{DEMAND}, way to the wall"), decimals, caption)
 

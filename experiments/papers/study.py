@@ -198,7 +198,7 @@ def done(
 
 
 def station_units_per_h(study: Study) -> float:
-    """Return the capacity of a pick station of a study, taken from its first arm."""
+    """Return the capacity of a pick station in units per hour, taken from the study's first arm."""
     stations = study.layout(study.plan.arms[0]).pick_stations
     return 3600.0 / min(station.unit_transfer_s for station in stations)
 

@@ -90,7 +90,7 @@ class DaskWorkers:
 
     @property
     def slots(self) -> int:
-        """Two jobs per worker, so that no worker waits for the driver."""
+        """Maximum number of submitted jobs: two per worker, so that none waits for the driver."""
         with self._scheduler_there():
             workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
         threads = [int(worker["nthreads"]) for worker in workers]
@@ -165,7 +165,7 @@ def read_profile(path: Path) -> Profile:
 
 
 def job_script(path: Path) -> str:
-    """Return the script submitted to the batch system for each of its jobs, without submitting it.
+    """Return the script that would be submitted to the batch system for each of the jobs.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def job_script(path: Path) -> str:
 
 
 def started(profile: Profile, source: str) -> Any:
-    """Start a cluster; from a batch system, request enough jobs for all workers.
+    """Start the cluster of a profile; with a batch system, request enough jobs for all workers.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def started(profile: Profile, source: str) -> Any:
     Raises
     ------
     InputError
-        If its options are invalid.
+        If the options of the profile are invalid.
     """
     options = dict(profile.options)
     try:

@@ -46,7 +46,7 @@ class Watcher(Protocol):
         """Receive a remark that is worth a line of output."""
 
     def tick(self) -> None:
-        """Update the display; called about every `PATIENCE_S` or more often."""
+        """Update the display; called at least about every `PATIENCE_S` seconds."""
 
 
 class Silent:
@@ -76,7 +76,7 @@ class Tally:
     ran
         Number of runs made by this driver.
     failed
-        Runs that failed in this driver, as arm and replication.
+        Runs that failed in this driver, as pairs of arm and replication.
     """
 
     wanted: int = 0

@@ -11,14 +11,14 @@ if TYPE_CHECKING:
 
 
 def narrow_enough(values: Sequence[float], relative: float, confidence: float = 0.95) -> bool:
-    """Return whether the t interval of a mean is narrow relative to the mean.
+    """Return whether the t interval of a mean is narrow enough relative to the mean.
 
     Implements the sequential procedure of Law and Kelton (Simulation Modeling and Analysis, section
     on confidence intervals with specified precision, after Chow and Robbins 1965). The half width
     is compared with relative / (1 + relative) times the mean, so that the error relative to the
     true mean is at most `relative`. Because the procedure stops when the sample happens to vary
-    little, its coverage is somewhat below `confidence` if it starts with few runs
-    (`tests.tools.coverage`).
+    little, the coverage of the interval is somewhat below `confidence` if the procedure starts with
+    few runs (`tests.tools.coverage`).
 
     Parameters
     ----------

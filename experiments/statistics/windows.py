@@ -32,7 +32,7 @@ def rates(
     columns
         Counts per interval, such as `orders_completed` and `distance_m`.
     start_s, end_s
-        The window, since the start of the runs.
+        Start and end of the window, in s since the start of the runs.
     keys
         Columns that identify runs.
 

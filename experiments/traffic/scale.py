@@ -54,8 +54,9 @@ class Size:
     horizontal, vertical
         Numbers of aisles.
     long_sides, short_sides
-        Number of pick stations in the east and of replenishment stations in the west; number of
-        pick stations in the north and of replenishment stations in the south.
+        Numbers of stations: there are `long_sides` pick stations in the east and as many
+        replenishment stations in the west, `short_sides` pick stations in the north and as many
+        replenishment stations in the south.
     """
 
     robots: int
@@ -176,7 +177,7 @@ def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
     Parameters
     ----------
     settings
-        Other settings that determine the figures.
+        Further settings that determine the figures, for the provenance files.
     """
     paths = [out / f"scale.{ending}" for ending in ("csv", "md", "png")]
     save_table(frame, paths[0], DECIMALS)
@@ -197,7 +198,7 @@ def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
 
 
 def exponent(frame: pd.DataFrame, column: str = "trips/h") -> float:
-    """Return the exponent b of processor time = a * column^b, fitted to logarithms; 1 is linear."""
+    """Return b of processor time = a * column^b, fitted to logarithms; 1 means linear growth."""
     work, cpu = np.log(frame[column].to_numpy()), np.log(frame["CPU s per h"].to_numpy())
     return float(np.polyfit(work, cpu, 1)[0])
 

@@ -56,7 +56,7 @@ class Site:
     replenishments: tuple[int, int, int, int]
 
     def layout(self) -> Layout:
-        """Generate the layout, with enough aisles: its blocks have 2 x 2 storage locations."""
+        """Generate the layout, with blocks of only 2 x 2 storage locations for enough aisles."""
         values: dict[str, Any] = {
             "robots": self.robots,
             "horizontal_aisles": self.horizontal,
@@ -171,7 +171,7 @@ def measure(
 
 
 def advance_by_windows(simulation: Simulation, until_s: float) -> int:
-    """Advance a run window by window; return the most robots that stood still in one.
+    """Advance a run window by window; return the largest number of robots standing still in one.
 
     Parameters
     ----------
@@ -182,8 +182,8 @@ def advance_by_windows(simulation: Simulation, until_s: float) -> int:
 
     Returns
     -------
-    Number of robots, as `standing_with_work` counts them. A window shorter than `WINDOW_S` at the
-    end counts nobody.
+    Number of robots, as `standing_with_work` counts them. If a window shorter than `WINDOW_S`
+    remains at the end, no robots are counted in it.
     """
     most = 0
     motion = simulation.traffic.motion()
@@ -215,7 +215,10 @@ def _deciding_s(simulation: Simulation) -> float:
 
 
 def growth(frame: pd.DataFrame) -> dict[str, float]:
-    """Return, for each set of rules, work per robot-hour of the largest over the smallest fleet."""
+    """Return, for each set of rules, the growth of the work per robot-hour.
+
+    This is the work with the largest fleet divided by the work with the smallest fleet.
+    """
     grown = {}
     for rules, rows in frame.groupby("rules", sort=False):
         work = rows["CPU s per robot-hour"]
@@ -229,7 +232,7 @@ def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
     Parameters
     ----------
     settings
-        Other settings that determine the figures.
+        Further settings that determine the figures, for the provenance files.
     """
     paths = [out / f"scale-warehouses.{ending}" for ending in ("csv", "md")]
     for path in paths:

@@ -1,9 +1,9 @@
 """The command line: the only part of rmfs that may import all others.
 
 A user error is reported as one line on standard error, with exit code 2. An interruption ends with
-exit code 130. A defect that the program detects is reported as one line that names a file to send;
-the exit code is 1. Commands import their modules when they run, so that help and errors appear
-without delay.
+exit code 130. A defect that the program detects is reported as one line, with exit code 1; the line
+names a file with details, to be sent to the developers. Commands import their modules when they
+run, so that help and errors appear without delay.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ def import_command(
         ),
     ] = None,
 ) -> None:
-    """Import files of RAWSim-O and report what differs, has no effect, is unknown or is refused."""
+    """Import files of RAWSim-O, and report what was left out, differs in rmfs or was refused."""
     from rmfs.rawsimo.folder import LIST, Imported, import_files
 
     def told(one: Imported) -> None:

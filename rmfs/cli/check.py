@@ -27,7 +27,8 @@ def check(
         typer.Argument(
             metavar="[RUN]...",
             help="Run folders with a trace: motion, stock, visits, orders, slots, bundles and "
-            "tables are audited from their files alone. Without any, the inputs below are checked.",
+            "tables are audited from their files alone. Without a run folder, the inputs "
+            "given by the options are checked.",
             show_default=False,
         ),
     ] = None,

@@ -1,4 +1,4 @@
-"""Reports on defects that the program detects: one line for the user, and a file to send."""
+"""Reports on defects that the program detects: a line for the user, a file for the developers."""
 
 from __future__ import annotations
 

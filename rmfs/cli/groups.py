@@ -27,7 +27,10 @@ SUB_COMMANDS = {
 COMMANDS = {
     "demonstrate": ("rmfs.demonstrator.commands", "Run a warehouse with physical robots."),
     "learn": ("rmfs.learning.commands", "Train linear rules on simulated runs."),
-    "emulate": ("rmfs.demonstrator.commands", "Emulate a room with physical robots."),
+    "emulate": (
+        "rmfs.demonstrator.commands",
+        "Emulate a room whose robots have the imperfections of physical ones.",
+    ),
 }
 """Module and help of each single command; the module is imported when it is called."""
 

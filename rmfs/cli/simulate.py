@@ -114,8 +114,8 @@ def run(
     speed: Annotated[
         float | None,
         typer.Option(
-            help="With --live: initial speed in simulated seconds per second. [default: as fast as "
-            "possible]",
+            help="With --live: initial speed, in simulated seconds per second of real time. "
+            "[default: as fast as possible]",
             show_default=False,
         ),
     ] = None,
@@ -208,7 +208,7 @@ def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     """Simulate and show progress.
 
     If no robot can move any more, a user's rule makes an impossible decision, an optimiser fails or
-    a replay deviates, the reason is printed and the command exits with code 1.
+    a replay deviates from its recording, the reason is printed and the command exits with code 1.
 
     Parameters
     ----------
@@ -272,7 +272,10 @@ def proven(done: Run) -> CheckReport:
 
 
 def conclude(target: Path, footprint: pd.Series, report: CheckReport | None) -> None:
-    """Print the main figures; exit with code 1 if the trace is unsafe or a units score above 1."""
+    """Print the main figures.
+
+    Exits with code 1 if the trace is unsafe or the units score exceeds 1.
+    """
     from rich.console import Console
 
     from rmfs.measure.summary import summarised

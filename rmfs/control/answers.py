@@ -81,7 +81,8 @@ MEANINGS = {
     "reach_s": Meaning("s", "estimated travel time from the robot to the pod"),
     "bring_s": Meaning("s", "unhindered travel time from the pod to the station"),
     "away_s": Meaning(
-        "s", "unhindered time from the robot to the place or station; in turns of TA, an estimate"
+        "s",
+        "unhindered time from the robot to the place or station; in decisions of TA, an estimate",
     ),
     "back_s": Meaning("s", "unhindered time from the place to the nearest active pick station"),
     "distance_m": Meaning("m", "straight distance from the pod to the place"),

@@ -25,7 +25,7 @@ DEFAULTS = {problem: problem.default for problem in Problem}
 """For each problem, the name of the rule used if a controllers file does not mention it."""
 
 _SHARED: dict[type[Parameters], str] = {TurnoverParameters: "classes", ZoneParameters: "zones"}
-"""Models whose parameters must be equal in all rules that have them, and what they describe."""
+"""Models of parameters that must be equal in all rules that have them, and what they define."""
 
 
 @dataclass(frozen=True)

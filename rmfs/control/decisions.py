@@ -22,7 +22,7 @@ class AssignOrder(NamedTuple):
 
 
 class AssignLines(NamedTuple):
-    """POA: assign the lines of an order with these SKUs to a pick station.
+    """POA: assign those lines of an order whose SKU is in `skus` to a pick station.
 
     The order is split: its other lines stay in the backlog. If a part of the order is already at
     the station, the lines join that part and share its slot.
@@ -34,7 +34,7 @@ class AssignLines(NamedTuple):
 
 
 class QueueOrder(NamedTuple):
-    """POA: move an order of the backlog into the pool of a pick station.
+    """POA: put an order of the backlog into the pool of a pick station.
 
     The order remains in the backlog and can only be assigned to this station, but the units that it
     needs can already be bound to pods. Station -1 removes the order from its pool and releases

@@ -90,7 +90,7 @@ class DummyPPS(PodSelection[LateBinding]):
         return -1
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Return the first station."""
+        """Return the first of the given stations."""
         return stations[0]
 
 
@@ -131,7 +131,7 @@ class DummyTA(TaskAllocation[NoParameters]):
 
 
 class DummySA(StationActivation[NoParameters]):
-    """Leaves the switching of stations, all off at the start, to another controller."""
+    """Leaves the switching of stations to another controller; all stations are off at the start."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER

@@ -115,9 +115,9 @@ RANKINGS: dict[str, dict[str, float]] = {
     "place": {"away_s": -1.0, "back_s": -1.0},
     "move": {"distance_m": -1.0, "reach_s": -1.0},
 }
-"""Weights by which candidates are ranked, for each kind of question: factors of unscaled features.
+"""Weights for the ranking of candidates, for each kind of question.
 
-The best candidates are those with the greatest weighted sums.
+The best candidates are those with the greatest weighted sums of unscaled features.
 """
 
 

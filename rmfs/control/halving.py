@@ -27,8 +27,8 @@ class Comparison:
     samples
         Maximum number of futures in which each decision is tried.
     instants
-        Budget of all trials: once this many instants have been simulated, no further future is
-        tried.
+        Budget of all trials: once this many instants (times at which something happens) have been
+        simulated, no further future is tried.
     certainty
         A decision replaces the first only if its mean advantage exceeds this many standard errors.
     state

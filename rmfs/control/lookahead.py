@@ -28,10 +28,11 @@ class Goal(Parameters):
     units: float = 1.0
     """Value of a unit picked at the start of the horizon; it falls linearly to 0 at the end."""
     orders: float = 0.0
-    """Value of an order completed at the start of the horizon; falls linearly to 0 at the end."""
+    """Value of an order completed at the start of the horizon; it falls linearly to 0 at the
+    end."""
     units_stored: float = 0.0
-    """Value of a unit stored at the start of the horizon; falls linearly to 0 at the end. With 0,
-    trials value no replenishment, although picked units must be replaced at some time."""
+    """Value of a unit stored at the start of the horizon; it falls linearly to 0 at the end.
+    With 0, trials value no replenishment, although picked units must be replaced some time."""
     overdue_s: float = pydantic.Field(default=0.0, ge=0)
     """Cost of each second by which an order is overdue within the horizon."""
     distance_m: float = pydantic.Field(default=0.0, ge=0)
@@ -46,7 +47,7 @@ class Tried(NamedTuple):
     value
         Value of the trial, as defined by the `Goal`.
     instants
-        Number of simulated instants, as a measure of work.
+        Number of simulated instants (times at which something happens), as a measure of work.
     """
 
     value: float

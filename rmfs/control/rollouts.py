@@ -32,8 +32,8 @@ class RolloutParameters(Parameters):
     """Parameters of rollout rules."""
 
     base: Table = pydantic.Field(default_factory=dict)
-    """The rule that makes the default decision and decides after a tried decision, as a table of a
-    controllers file. By default, it is the default rule of the problem."""
+    """The rule that makes the default decision and, in trials, all decisions after the one tried; a
+    table of a controllers file. By default, it is the default rule of the problem."""
     candidates: AtLeastOne = 4
     """Maximum number of decisions compared, including the decision of the base rule."""
     samples: AtLeastOne = 4
@@ -41,8 +41,8 @@ class RolloutParameters(Parameters):
     horizon_s: Positive = 180.0
     """Simulated duration of a trial in seconds."""
     instants: AtLeastOne = 100_000
-    """Budget of each comparison: once its trials have simulated this many instants in total, no
-    further future is tried."""
+    """Budget of each comparison: once its trials have simulated this many instants (times at which
+    something happens) in total, no further future is tried."""
     certainty: Annotated[float, pydantic.Field(ge=0)] = 1.0
     """Another decision replaces that of the base rule only if its mean advantage exceeds this many
     standard errors."""

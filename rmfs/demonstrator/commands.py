@@ -52,7 +52,8 @@ Real = Annotated[
 Tags = Annotated[
     Path | None,
     typer.Option(
-        help="Floor tags, one line WAYPOINT;TAG each. [default: W0, W1, ...]", show_default=False
+        help="File of the floor tags, with one line WAYPOINT;TAG for each. [default: W0, W1, ...]",
+        show_default=False,
     ),
 ]
 Secret = Annotated[

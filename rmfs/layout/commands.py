@@ -41,7 +41,7 @@ Force = Annotated[bool, typer.Option("--force", help="Replace a file that exists
 
 EXIT_REFUSED = 2
 MOST_MEASURED = 50_000
-"""Maximum number of waypoints for which `check` measures the graph, which then takes seconds."""
+"""Maximum number of waypoints for which `check` measures the graph; this many take seconds."""
 
 
 @app.command()

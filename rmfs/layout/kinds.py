@@ -149,7 +149,7 @@ TASK_COLOURS = {
     "reposition": "#CC79A7",
     "rest": "#999999",
 }
-"""Colours of robots by task; a robot bound for another kind of station has that kind's colour."""
+"""Colours of robots by task; robots bound for other kinds of stations have their colours."""
 
 _SHIPPED = {
     "charger": "rmfs.layout.charging:Charger",

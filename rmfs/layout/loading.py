@@ -48,8 +48,8 @@ def load_with_notes(
         experiments).
     overrides
         (path, value) pairs such as `(["robots"], 16)`, applied to the parameters before they are
-        validated. Explicit layouts accept only the keys of `ExplicitOverrides`; its `FACTORS` are
-        also valid for generated layouts.
+        validated. Explicit layouts accept only the keys of `ExplicitOverrides`, of which
+        those in `FACTORS` are also valid for generated and drawn layouts.
 
     Returns
     -------

@@ -90,7 +90,7 @@ class ReplenishmentStation:
 
 @dataclass(frozen=True, slots=True)
 class OtherStation:
-    """A station of another kind, which defines what happens there."""
+    """A station that is neither for picking nor replenishment; its kind defines its service."""
 
     kind: StationKind
     waypoint: int
@@ -199,7 +199,7 @@ class Layout:
 
     @property
     def other_kinds(self) -> tuple[StationKind, ...]:
-        """The kinds of the other stations, in order."""
+        """The kinds of stations other than pick and replenishment stations, in order."""
         return tuple({station.kind.name: station.kind for station in self.other_stations}.values())
 
     @property

@@ -1,8 +1,9 @@
 """Overrides for explicit layouts, which are not generated from parameters.
 
 The aisles of an explicit layout cannot be lengthened, but its robots and stations can be changed.
-The keys and their meanings are those of the layout parameters. Shares of stations and robots per
-station are factors of experiments and also apply to generated layouts.
+Keys that are also layout parameters have the same meaning. The other keys (`FACTORS`), the shares
+of stations that are kept and the number of robots per pick station, are meant as factors of
+experiments and also apply to generated and drawn layouts.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ class ExplicitOverrides(Strict):
 
 
 FACTORS = ("pick_station_share", "replenishment_station_share", "robots_per_pick_station")
-"""Keys that also apply to generated layouts, after everything else."""
+"""Keys that also apply to generated and drawn layouts, where they are applied last."""
 
 
 def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source: str) -> Layout:

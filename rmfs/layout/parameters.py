@@ -32,9 +32,10 @@ class PerSide(Strict):
 
 
 class OtherStations(PerSide):
-    """Stations of another kind: how many stand on each side of a tier, and their parameters.
+    """Stations of a further kind: how many stand on each side of a tier, and their parameters.
 
-    Such stations may also stand within the storage area, each in place of a storage location.
+    Unlike pick and replenishment stations, they may also stand within the storage area, each in
+    place of a storage location.
     """
 
     within: Amount = Field(0, description="number within the storage area of a tier")
@@ -113,7 +114,8 @@ class LayoutParameters(Strict):
         6,
         ge=2,
         le=1000,
-        description="number of vertical aisles; must be even under the same conditions",
+        description="number of vertical aisles; must be even under the same conditions as "
+        "`horizontal_aisles`",
     )
     block_length: int = Field(
         4,

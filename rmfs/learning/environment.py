@@ -35,10 +35,11 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     """An environment in which an episode is a run and a step is a decision of the chosen problems.
 
     Actions 0 to k - 1 choose one of the k best candidates (possible answers), in order of their
-    ranking. Action k declines: it ends a turn, or answers that there is nothing to choose. With
-    `rule`, action k + 1 follows the installed rule of the problem. Questions with only one possible
-    action are skipped. An impossible action sets `info["invalid"]`. It counts as declining or,
-    where declining is impossible, as action 0.
+    ranking. Action k declines: in a turn, which may consist of several decisions (as in TA), it
+    ends the turn; otherwise, it answers that there is nothing to choose. With `rule`, action k + 1
+    follows the installed rule of the problem. Questions with only one possible action are skipped.
+    An impossible action sets `info["invalid"]`. It counts as declining or, where declining is
+    impossible, as action 0.
 
     An observation is a dictionary with the arrays `global`, shape (G,), `candidates`, shape (k, F),
     and `action_mask`; if `observation` is `flat`, it is one vector, the first two concatenated. The
@@ -194,8 +195,9 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def advised(self) -> int:
         """Return the action that agrees with the installed rule; requires `rule`.
 
-        If the rule would choose a candidate that is offered, it is the action of this candidate. If
-        the rule would decline, it is declining. Otherwise, it is the action that follows the rule.
+        If the rule would choose a candidate that is offered, this is the action of the candidate.
+        If the rule would decline, it is action k. Otherwise, it is action k + 1, which follows the
+        rule.
         """
         options = self._options
         if options is None or not self._with_rule:

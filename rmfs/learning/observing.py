@@ -56,9 +56,10 @@ class Options:
     decision
         The question.
     rows
-        Rows of the at most k best of `decision.candidates`, the best first.
+        Row numbers in `decision.candidates` of the best candidates (at most k), the best first.
     features
-        Scaled features of these candidates, shape (k, F); further rows are zero.
+        Scaled features of these candidates, shape (k, F); if there are fewer than k, the
+        remaining rows are zero.
     mask
         Which actions are possible, shape (k + 1,); the last action declines.
     """

@@ -104,7 +104,7 @@ class Distance(Reward):
         self._traffic = run.traffic
 
     def warmup_ended(self, time_s: float) -> None:
-        """Add the distance so far, since the traffic model begins to count from 0 again."""
+        """Include the distance so far, since the traffic model begins to count from 0 again."""
         self._catch_up()
         self._known_m = 0.0
 
@@ -125,7 +125,7 @@ class Weighted(Reward):
     Parameters
     ----------
     parts
-        Pairs of a reward and its weight. Each of these rewards observes the run itself.
+        Pairs of a reward and its weight. Each of these rewards is an observer of the run.
     """
 
     def __init__(self, parts: list[tuple[Reward, float]]) -> None:

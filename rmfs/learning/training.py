@@ -39,8 +39,8 @@ TRAINED: dict[Problem, dict[str, str]] = {
     Problem.PSA: {"weights": "place"},
     Problem.TA: {"weights": "ta"},
 }
-"""For each problem, which parameters of its linear rule are trained, each with the kind of question
-for which it contains the weights."""
+"""For each problem, the parameters of its linear rule that are trained, each with the kind of
+question to which its weights apply."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Task:
     problems
         Problems whose linear rules are trained; keys of `TRAINED`.
     objective
-        The sum to be maximised: the weight of each of its footprint columns.
+        Weights by column of the footprint; the weighted sum of the columns is maximised.
     seeds
         Seeds of the runs with which each vector of weights is evaluated.
     set
@@ -168,8 +168,8 @@ def train(
         Number of generations, and of vectors of weights per generation; each vector is simulated
         with all seeds.
     spread
-        Initial standard deviation of the weights. The greatest initial weight for each kind of
-        question has the absolute value 1.
+        Initial standard deviation of the weights. For comparison: for each kind of question, the
+        largest absolute value of the initial weights is 1.
     seed
         Seed of the evolution; the result does not depend on the number of processes.
     jobs

@@ -1,7 +1,8 @@
 """What a run reports: footprint, tables, heat maps, traces and their independent check.
 
-`Recorder` observes a run. `tables` turns its logs into the tables that `dictionary` describes, and
-`measures` into the footprint; `folder` writes and reads run folders; `checker` proves a trace safe.
+`Recorder` observes a run. From its logs, `tables` makes the tables that `dictionary` describes, and
+`measures` computes the footprint; `folder` writes and reads run folders; `checker` proves a trace
+safe.
 """
 
 from __future__ import annotations

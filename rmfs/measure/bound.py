@@ -1,7 +1,7 @@
 """The proven upper bound on the throughput of a run, computed by the optimisation package.
 
-This module does not import `solvers`: like controllers that use optimisers, the bound is found by
-name.
+This module does not import `solvers`: the function is found by its name, as are controllers that
+use optimisers.
 """
 
 from __future__ import annotations

@@ -89,7 +89,7 @@ class Recorded(Measured, Protocol):
 
     @property
     def interventions(self) -> Sequence[tuple[float, Choice]]:
-        """For each interactive exchange of a controller, its time (s) and the new choice."""
+        """For each interactive exchange of a controller, its time (s) and the new controller."""
 
     @property
     def slow_robots(self) -> list[tuple[int, int, int, float]]:
@@ -97,11 +97,11 @@ class Recorded(Measured, Protocol):
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
-        """Every piece of motion; only if recording was requested."""
+        """Every piece of motion; available only if recording was requested."""
 
     @property
     def events(self) -> EventLog | None:
-        """The other events; only if recording of the trace was requested."""
+        """All events except motion; None unless recording of the trace was requested."""
 
 
 class EndedRun:

@@ -21,8 +21,8 @@ class EnergyLog:
     """Energy drawn by robots, if the scenario models it.
 
     The energy that a robot draws between the ends of two visits with picked units is divided
-    equally among the units of the second visit. It includes driving, waiting, storing the previous
-    pod, and the way to a charger.
+    equally among the units of the second visit. This energy includes driving, waiting, storing the
+    previous pod, and the way to a charger.
 
     Attributes
     ----------

@@ -46,7 +46,8 @@ class Happening(IntEnum):
     BUNDLE_CREATED = 6
     """A bundle arrived (order: the bundle's number, sku, units)."""
     BUNDLE_ASSIGNED = 7
-    """A bundle was given pod and station (order: the bundle's number, sku, pod, station, units)."""
+    """A bundle was assigned a pod and a station (order: the bundle's number, sku, pod, station,
+    units)."""
     BUNDLE_STORED = 8
     """A bundle went into its pod (order: its number, sku, pod, robot, station, units)."""
     VISIT_STARTED = 9
@@ -58,15 +59,16 @@ class Happening(IntEnum):
     CONTROLLER_EXCHANGED = 12
     """Another controller was installed (detail: problem=name)."""
     BATTERY_LEVEL = 13
-    """Level of a battery, at the start of each task and every minute (robot, units:
-    thousandths)."""
+    """Level of a battery, at the start of each task and every minute after the warm-up (robot,
+    units: thousandths)."""
     ORDER_LINE = 14
     """An order has a line for units of a SKU (order, sku, units). With a station: the line was
     assigned there with a part of the split order."""
     ORDER_DUE = 15
     """Due time of an order (order, units: whole seconds since the start of the run)."""
     ORDER_CUT = 16
-    """Stock could not serve an order completely (order, units left); its new lines follow."""
+    """Stock could not serve an order completely (order, units: those it keeps). Its new lines
+    follow as `ORDER_LINE`."""
     ORDER_CANCELLED = 17
     """An order was cancelled because stock could not serve it (order)."""
     PART_COMPLETED = 18
@@ -155,7 +157,7 @@ class EventLog(Observer):
         return len(self._rows) // ROW.size
 
     def columns(self, known: int = 0) -> dict[str, NDArray[np.int64]]:
-        """Return the events after the first `known`, one array per column."""
+        """Return all events except the first `known` ones, as one array per column."""
         rows = np.frombuffer(self._rows[known * ROW.size :], np.int64).reshape(-1, len(COLUMNS))
         return dict(zip(COLUMNS, rows.T, strict=True))
 
@@ -230,7 +232,7 @@ class EventLog(Observer):
             self._add_lines(self._now_s, order)
 
     def slot_freed(self, order: Order) -> None:
-        """Record that a part of a split order left its slot; other orders are not recorded here."""
+        """Record that a part of a split order left its slot; ignore orders that are not split."""
         if order.whole is not None or order.parts:
             self._add_order(self._now_s, Happening.PART_COMPLETED, order)
 

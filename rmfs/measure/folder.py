@@ -190,7 +190,7 @@ class RunFolder(Results):
 
     @property
     def events(self) -> pd.DataFrame:
-        """All other events; raises the same errors as `trace`."""
+        """All events except motion; raises the same errors as `trace`."""
         return read_events(self.path)
 
     @property

@@ -50,7 +50,7 @@ PACKAGES = (
 """Packages whose version is recorded: all dependencies, including solvers."""
 
 MARK = "+"
-"""Separator between the name of a set of controllers and interactive exchanges."""
+"""Separator between the name of a set of controllers and their exchanges during the run."""
 
 KINDS: dict[str, instances.Kind] = {
     "layout": "layouts",

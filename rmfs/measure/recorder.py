@@ -50,7 +50,7 @@ class Recorder(Observer):
     units
         Picked units.
     lines
-        Finished lines, with the robot that brought the last unit, and the end of its handling.
+        Finished lines, with the robot that brought the last unit, and when this unit was handled.
     orders
         Completed and cancelled orders; rows as in `order_row`.
     open_orders
@@ -64,8 +64,8 @@ class Recorder(Observer):
     busy
         Periods in which stations handled something.
     tasks
-        Tasks started; `kind` is an index into `TASKS`, or larger for a visit to a station of
-        another kind.
+        Tasks started; `kind` is an index into `TASKS`, or a larger number for visits to stations
+        other than pick and replenishment stations.
     lifts
         Liftings of pods.
     calls
@@ -325,7 +325,7 @@ class Recorder(Observer):
         self.questions.append(call)
 
     def optimiser_answered(self, call: Call) -> None:
-        """Record the solution; the call counts how it is used."""
+        """Record the solution; `call` counts how it is used."""
         if call.solution is not None:
             self.solutions[call.number] = to_text(call.solution)
 

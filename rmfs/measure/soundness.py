@@ -36,7 +36,7 @@ WORDS = ("kind", "detail")
 
 
 def require_columns(path: Path, table: Any, names: Sequence[str]) -> None:
-    """Make sure that columns have the right types, and no missing values except in details.
+    """Make sure that columns have the right types, and no missing values except in `detail`.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class Steps:
 
     @classmethod
     def between(cls, begin_s: ArrayLike, end_s: ArrayLike) -> Steps:
-        """Return the number of open intervals over time; one whose end is nan stays open."""
+        """Return how many intervals are open over time; one whose end is nan stays open."""
         begins, ends = np.asarray(begin_s, np.float64), np.asarray(end_s, np.float64)
         sign = np.concatenate([np.ones(len(begins)), -np.ones(len(ends))])
         return cls(np.concatenate([begins, ends]), sign)

@@ -25,13 +25,13 @@ class _Told(pydantic.BaseModel):
 
 
 class Source(_Told):
-    """An input, by name; digests, files and parameters are in other keys."""
+    """An input, by name; its digest, file and parameters are in keys that are not read back."""
 
     name: str
 
 
 class OwnColumn(_Told):
-    """A column of a measure of the user."""
+    """A column of a user's measure."""
 
     name: str
     dtype: str = Field(pattern="|".join(DTYPES))
@@ -42,7 +42,7 @@ class OwnColumn(_Told):
 
 
 class OwnMeasure(_Told):
-    """A measure of the user."""
+    """A user's measure."""
 
     columns: list[OwnColumn]
 

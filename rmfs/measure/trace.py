@@ -30,7 +30,7 @@ EARLIER = {EVENTS: ("rmfs-events/1",)}
 _KEY = b"rmfs-format"
 
 DELTAS = ("t0_us", "t1_us", "time_us")
-"""Columns that are stored as differences between rows, which take fewer bytes than the numbers."""
+"""Columns that are stored as differences between rows, which take fewer bytes than the values."""
 
 TRACE_COLUMNS = (
     "robot",

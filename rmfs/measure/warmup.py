@@ -69,12 +69,12 @@ def settled(smooth: ArrayLike, tolerance: float = 0.05) -> int | None:
     Parameters
     ----------
     tolerance
-        Largest deviation from the mean of the second half, as a share of that mean.
+        Largest permitted deviation from the mean of the second half, as a share of that mean.
 
     Returns
     -------
     int | None
-        The index; None if the series leaves the band again in the second half.
+        The index; None if the deviation exceeds the tolerance again in the second half.
     """
     values = np.asarray(smooth, np.float64)
     half = len(values) // 2

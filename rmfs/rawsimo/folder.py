@@ -1,8 +1,8 @@
 """Import of one file or a folder of RAWSim-O's files.
 
 Layouts, scenarios, controllers and SKU sets go into folders of these names, which keep the
-subfolders of the source. The file `import.md` lists for each file what it was, what was left out or
-differs, and why it was refused.
+subfolders of the source. The file `import.md` lists for each file what it was, and either what was
+left out or differs, or why it was refused.
 """
 
 from __future__ import annotations

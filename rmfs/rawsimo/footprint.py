@@ -166,7 +166,8 @@ def _visits() -> list[Mapped]:
         ),
         Mapped(
             "PodsHandledPerOStationAvg",
-            "mean of `stations.visits`, pick stations (RAWSim-O averages replenishment stations)",
+            "mean of `stations.visits`, pick stations (RAWSim-O averages over the replenishment "
+            "stations instead)",
         ),
         Mapped(
             "PodsHandledPerOStationVar",

@@ -1,7 +1,7 @@
 """Simulated time in whole microseconds, and periodic times.
 
 Whole microseconds add up exactly, are the same on every processor, and survive conversion to
-decimals: a stream read from a file equals the stream that was written.
+decimals: a stream of orders read from a file equals the one that was written to it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`rmfs scenario`: list, show, check, import and export scenarios, and their SKUs."""
+"""`rmfs scenario`: list, show, check, import, export and fit scenarios; describe their SKUs."""
 
 from __future__ import annotations
 
@@ -55,13 +55,13 @@ def list_scenarios() -> None:
 
 @app.command()
 def show(scenario: Name, settings: Settings = None) -> None:
-    """Print all parameters of a scenario as TOML, defaults included and explained."""
+    """Print all parameters of a scenario as TOML, including defaults, with explanations."""
     typer.echo(to_toml(_loaded(scenario, settings)), nl=False)
 
 
 @app.command()
 def check(scenario: Name, settings: Settings = None) -> None:
-    """Check a scenario and its files: report what is wrong, or what it contains."""
+    """Check a scenario and its files; report what is wrong or, if nothing is, what it contains."""
     config = _loaded(scenario, settings)
     skus = sku_set(config.skus)
     anywhere = Site(1, 1, capacity=math.inf, largest_pod=math.inf)

@@ -43,7 +43,7 @@ class _Range(Block, ABC):
 
 
 class UniformCount(_Range):
-    """Every whole number from `min` to `max` equally likely."""
+    """Uniform distribution of the whole numbers from `min` to `max`."""
 
     distribution: Literal["uniform"] = "uniform"
 
@@ -54,7 +54,7 @@ class UniformCount(_Range):
 
 
 class NormalCount(_Range):
-    """Normal, truncated to [min - 0.5, max + 0.5) and rounded.
+    """Normal distribution, truncated to [min - 0.5, max + 0.5) and rounded.
 
     `mean` and `sd` are those before truncation. With `sd` = 0 the count is the rounded mean.
     """
@@ -92,7 +92,7 @@ Weights = Annotated[
 
 
 class ListedCount(Block):
-    """Values 1, 2, ..., n with a relative weight each; n is at most 1000."""
+    """The values 1, 2, ..., n, each with a relative weight; n is at most 1000."""
 
     distribution: Literal["listed"] = "listed"
     weights: Weights

@@ -38,7 +38,7 @@ class Constant(Block):
 
 
 class Uniform(Block):
-    """Equally likely anywhere between `min` and `max`."""
+    """Uniform distribution between `min` and `max`."""
 
     distribution: Literal["uniform"] = "uniform"
     min: Positive
@@ -108,7 +108,7 @@ class _Cut(Block, ABC):
 
 
 class Normal(_Cut):
-    """Normal, truncated to [min, max]; `mean` and `sd` are those before truncation."""
+    """Normal distribution, truncated to [min, max]; `mean` and `sd` are those before truncation."""
 
     distribution: Literal["normal"] = "normal"
     mean: float
@@ -128,7 +128,7 @@ class Normal(_Cut):
 
 
 class Gamma(_Cut):
-    """Gamma, truncated to [min, max]; its mean before truncation is shape x scale."""
+    """Gamma distribution, truncated to [min, max]; its mean before truncation is shape x scale."""
 
     distribution: Literal["gamma"] = "gamma"
     shape: Positive
@@ -148,7 +148,7 @@ class Gamma(_Cut):
 
 
 class Exponential(_Cut):
-    """Exponential, truncated to [min, max]; its mean before truncation is 1 / rate."""
+    """Exponential distribution, truncated to [min, max]; its mean before truncation is 1 / rate."""
 
     distribution: Literal["exponential"] = "exponential"
     rate: Positive

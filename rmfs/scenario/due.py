@@ -159,7 +159,7 @@ NO_CLASS = -1
 
 
 def class_of(due: Due, uniform: float) -> int:
-    """Return the index of the class of an order, given the number that its offset was drawn with.
+    """Return the index of an order's class, given the number from which its offset was drawn.
 
     The result is `NO_CLASS` if the scenario has no classes.
     """

@@ -35,8 +35,8 @@ class OrderContent(NamedTuple):
     due_offset_s
         Time from arrival to due time, in s.
     redraws
-        Number of draws whose SKU had too few uncommitted units, at most `DRAWS_PER_LINE` for each
-        line.
+        Number of draws rejected because the SKU had too few units that no earlier order needs; at
+        most `DRAWS_PER_LINE` for each line.
     priority
         Index of its class; -1 if there are no classes (`orders.due.mode = "classes"`).
     """
@@ -68,8 +68,8 @@ class OrderSource:
     source
         Name of the scenario, for messages.
     path
-        Further numbers that select the substream (see `Substreams`), for orders with a numbering of
-        their own.
+        Numbers that select the substreams (see `Substreams`), for orders that are numbered
+        separately, such as those of batches.
 
     Raises
     ------
@@ -103,8 +103,8 @@ class OrderSource:
         Parameters
         ----------
         ordinal
-            Number k of the order, 0 or greater. Each is drawn only once: after None, the next
-            attempt uses k + 1.
+            Number k of the order, 0 or greater. Each number is used only once: after None, the
+            next attempt uses k + 1.
         uncommitted
             Units of each SKU that are stored and not needed for orders that have arrived, shape
             (K,).

@@ -48,7 +48,7 @@ class UnitTimes:
         Parameters
         ----------
         station_s
-            Time of a unit in s according to the layout of the station. It is the mean of the
+            Time of a unit in s that the layout gives for the station. It is the mean of the
             distribution, except if times are measured.
         """
         given = self._given
@@ -89,7 +89,7 @@ def learned(given: Learning | None, units: float) -> float:
 
 
 def least_factor(given: Pickers) -> float:
-    """Return a lower bound of the factor on the drawn time of a unit; 0 if none above 0 is known.
+    """Return a lower bound of the factor on the drawn time of a unit, or 0 if none is known.
 
     Fatigue and errors only increase the time.
     """

@@ -97,8 +97,8 @@ def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> Bundl
 def time_zero(scenario: Scenario) -> datetime | None:
     """Return the date and time of time zero of a scenario; None if nothing in it has a date.
 
-    It is the start given in the scenario. Default: the time of day at time zero, on the day of the
-    earliest first row of its files. It is the same for orders and bundles.
+    It is the start given in the scenario. Default: `time_of_day_s` after midnight of the day on
+    which the earliest row of the scenario's files falls. It is the same for orders and bundles.
 
     Raises
     ------

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Place = Callable[[BundleContent, NDArray[np.float64]], int | None]
 
 POD_DRAWS = 32
-"""Number of pods tried for a bundle before all pods with room are listed."""
+"""Number of pods drawn for a bundle to find one with room, before all pods are searched."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,10 @@ def initial_stock(
     choose: ChoosePod | None = None,
     first: Sequence[int] = (),
 ) -> InitialStock:
-    """Fill the pods with bundles, with SKUs drawn by popularity, until a share is reached.
+    """Fill a share of the pods' capacity with bundles, whose SKUs are drawn by popularity.
 
-    A bundle that fits into no pod is dropped and another one drawn; if no bundle of any SKU fits,
-    filling ends.
+    A bundle that fits into no pod is dropped, and another one is drawn; if no bundle of any SKU
+    fits, filling ends.
 
     Parameters
     ----------
@@ -73,8 +73,8 @@ def initial_stock(
     seed
         The run's seed.
     choose
-        Given a bundle and the free space of each pod (P,), returns a pod with room for it; only
-        called if there is one. Default: any such pod, all equally likely.
+        Function of a bundle and the free space of each pod (P,), which returns a pod with room for
+        it; only called if there is one. Default: any such pod, all equally likely.
     first
         SKUs of bundles to store before any are drawn; a SKU may occur several times.
 

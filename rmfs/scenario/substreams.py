@@ -1,4 +1,4 @@
-"""Random numbers for the k-th element of a stream, independent of all others."""
+"""Random numbers for the k-th element of a stream, independent of those of other elements."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
 
 class Substreams:
-    """One stream of the seed's tree, divided into numbered substreams.
+    """One of the random streams derived from a seed, divided into numbered substreams.
 
     A counter-based generator (Philox) computes its numbers from a key and a counter. The key is
-    derived from the seed and the stream, and the ordinal is part of the counter. Switching to a
-    substream therefore takes one microsecond, whereas a new generator per ordinal takes ten.
+    derived from the seed and the stream, and the number of the substream is part of the counter.
+    Switching to a substream therefore takes one microsecond; creating a generator would take ten.
     Substreams do not overlap before 2**64 blocks of four numbers.
 
     Parameters
@@ -25,9 +25,9 @@ class Substreams:
     seed
         The run's seed, 0 or greater.
     stream
-        Name of the stream in the tree.
+        The stream, such as that of the contents of orders.
     path
-        Further numbers below the stream; each path has its own substreams.
+        Numbers that select a branch of the stream; each branch has its own substreams.
     """
 
     def __init__(self, seed: int, stream: Stream, path: tuple[int, ...] = ()) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def to_toml(model: pydantic.BaseModel) -> str:
-    """Return every parameter of a model as TOML, including defaults but not None.
+    """Return every parameter of a model as TOML, including defaults, except those that are None.
 
     Reading the text back gives an equal model.
     """

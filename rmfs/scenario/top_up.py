@@ -1,4 +1,4 @@
-"""Topping up of a backlog: pauses by stock level, and after failures."""
+"""Topping up of a backlog, with pauses that depend on the stock level or follow a failure."""
 
 from __future__ import annotations
 
@@ -76,8 +76,8 @@ class OrderTopUp(_TopUp):
     def wants(self, time_s: float, waiting: int, stored: float) -> bool:
         """Return whether an order should be generated now.
 
-        To be called after every change of stock or backlog, since a pause starts when the level is
-        crossed.
+        To be called after every change of stock or backlog, since a pause starts when the stock
+        falls below a level.
 
         Parameters
         ----------

@@ -31,8 +31,8 @@ class WordSource:
     seed
         The run's seed.
     path
-        Further numbers that select the substream (see `Substreams`), for orders with a numbering of
-        their own.
+        Numbers that select the substreams (see `Substreams`), for orders that are numbered
+        separately, such as those of batches.
     """
 
     def __init__(

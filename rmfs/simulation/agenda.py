@@ -1,4 +1,4 @@
-"""The agenda: the current time and all future events in a total order, so that runs repeat."""
+"""The agenda: current time and future events, in a unique order that makes runs repeatable."""
 
 from __future__ import annotations
 

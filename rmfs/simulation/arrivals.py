@@ -86,7 +86,7 @@ class ArrivalProcess:
         self._wake_at(min(self._orders.next_us, self._bundles.next_us))
 
     def redraw(self) -> None:
-        """Redraw when orders and bundles arrive next; see `Intake.redraw`."""
+        """Redraw the times of the next arrivals; see `Intake.redraw`."""
         now_us = self._agenda.now_us
         if self._woken_us > now_us:
             self._agenda.cancel(self._wake)
@@ -147,7 +147,7 @@ class ArrivalProcess:
 
     @property
     def load(self) -> float:
-        """Space units of units that are stored, on their way into pods, or waiting."""
+        """Space units taken by the units that are stored, on their way into pods, or waiting."""
         return self._world.load
 
     @property

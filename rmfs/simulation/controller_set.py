@@ -66,8 +66,9 @@ class ControllerSet:
     def consulted(self, problem: Problem) -> Any:
         """Return the controller that answers TA's questions about a problem.
 
-        If a dummy is installed for the problem, this is the joint controller that decides in its
-        place. A joint controller must also implement the methods of the problem's protocol.
+        If a placeholder (dummy) is installed for the problem, this is the joint controller that
+        decides in its place. A joint controller must also implement the methods of the problem's
+        protocol.
         """
         return self._consulted[problem]
 

@@ -74,8 +74,8 @@ class Deciding:
     def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:
         """Apply decisions one by one, and measure the time spent on making them.
 
-        Calls can be nested: an optimiser may answer while the controller that asked it still
-        decides.
+        Calls can be nested: an optimiser may answer while the controller that asked it is still
+        deciding.
 
         Parameters
         ----------
@@ -265,8 +265,8 @@ class Deciding:
         call
             The call to an optimiser from whose answer the decision follows; None: the rule decided.
         modelled
-            Whether optimisers can make this kind of choice; otherwise it does not count as a
-            decision that the rule made in an optimiser's place.
+            Whether optimisers can make this kind of choice. A choice of another kind does not count
+            as a decision that the rule made in place of an optimiser.
         """
         self._nested_ns += wall_ns
         self.record(problem, wall_ns, int(decided), int(decided and call is None))

@@ -170,7 +170,7 @@ class Dispatch:
         return self._world.robots[keeper].waypoint == place
 
     def lift_started(self, index: int, pod: int) -> None:
-        """Handle that a robot lifts its pod, and send it to its station or place."""
+        """Record that a robot is lifting its pod, and that it goes on to its station or place."""
         world = self._world
         robot = world.robots[index]
         assert robot.task is not None
@@ -181,7 +181,7 @@ class Dispatch:
         self._events.pod_lifted(world.now_s, pod, index, place)
 
     def at_head(self, index: int, station: int) -> None:
-        """Handle that a robot has reached a station, where its pod can be served."""
+        """Record that a robot has reached its station, and start to serve its pod."""
         world = self._world
         robot, reached = world.robots[index], world.stations[station]
         robot.station = station
@@ -191,13 +191,13 @@ class Dispatch:
         self._services[station].go_on()
 
     def set_down(self, index: int, pod: int) -> None:
-        """Handle that a pod stands at its place and is available."""
+        """Record that a pod has been set down at its place and is available."""
         robot = self._world.robots[index]
         self._world.set_down(robot, robot.waypoint)
         self._events.pod_set_down(self._world.now_s, pod, index, robot.waypoint)
 
     def idle(self, index: int, _waypoint: int) -> None:
-        """Handle that a robot has finished its program; if it stored a pod, it needs a task."""
+        """End the task of a robot that has finished its program, if the task was to store a pod."""
         task = self._world.robots[index].task
         if task is not None and task.stores:
             end_task(self._world, self._events, index)

@@ -116,7 +116,7 @@ class DisturbanceSource:
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
         """Return the number of disturbances in a time interval, and their total time in it, in s.
 
-        Disturbances that overlap each add their full time.
+        Each of several simultaneous disturbances counts with its full time.
         """
         start_us, end_us = round(start_s * 1e6), round(end_s * 1e6)
         parts = [

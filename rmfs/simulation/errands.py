@@ -1,4 +1,4 @@
-"""Decisions of TA made outside the simulation that leave a choice to PPS, PSA or repositioning."""
+"""Completes decisions of TA made outside the simulation that leave a choice to other problems."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def work(decision: WorkFor, view: View, consult: Consult) -> TaskDecision | None:
-    """Complete a `WorkFor` decision; None if PPS finds no pod."""
+    """Return the task for a `WorkFor` decision, whose pod PPS chooses; None if it finds none."""
     robot, station = decision
     if robot.pod >= 0:
         return bring(view, robot, robot.pod, station)
@@ -23,13 +23,13 @@ def work(decision: WorkFor, view: View, consult: Consult) -> TaskDecision | None
 
 
 def store(decision: Store, consult: Consult) -> TaskDecision | None:
-    """Complete a `Store` decision; None if PSA finds no place."""
+    """Return the task for a `Store` decision, whose place PSA chooses; None if it finds none."""
     place = consult.place_for(decision.robot)
     return Park(decision.robot, place) if place >= 0 else None
 
 
 def move_pod(decision: MovePod, view: View, consult: Consult) -> TaskDecision | None:
-    """Complete a `MovePod` decision; None if repositioning finds no move."""
+    """Return the task for a `MovePod` decision; None if the repositioning rule finds no move."""
     move = consult.move_for(decision.robot)
     if move is None:
         return None

@@ -47,7 +47,7 @@ class Snapshot(Generic[K]):
     Parameters
     ----------
     along
-        Copied together with the simulation; may refer to parts of it.
+        Object that is copied together with the simulation, and may refer to parts of it.
     spectators
         Observers without influence on the run; copies have observers that do nothing instead.
     """

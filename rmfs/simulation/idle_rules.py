@@ -14,10 +14,9 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""Minimum time between the last decision of a rule and the end of the run for which the rule is
-reported, as a share of the run."""
+"""A rule is reported if it decided nothing in at least this last share of the run."""
 LEAST_S = 300.0
-"""The same minimum in s; the larger of the two applies."""
+"""Minimum of that time in s."""
 
 
 class IdleRuleWarning(UserWarning):

@@ -21,12 +21,15 @@ if TYPE_CHECKING:
 
 
 class LateBinding(Observer):
-    """Adds new work to tasks when orders are assigned or queued, bundles assigned, or pods lifted.
+    """Adds new work to the tasks of pods that are on their way to a station.
 
-    A task is extended only while its pod is carried and at least one of its requests is left; a pod
-    without requests is considered when its robot asks for a task. If several pods qualify, the one
-    that reaches the station first gets the work. PPS switches this on and off, and determines
-    whether requests of queued orders are bound as well.
+    It does so when an order is assigned or queued, a bundle is assigned, or a pod is lifted.
+
+    Requests of queued orders are also bound when a task starts. Otherwise, a task is extended only
+    while its pod is carried and at least one of its requests is left; a pod without requests is
+    considered when its robot asks for a task. If several pods qualify, the one that reaches the
+    station first gets the work. The parameters of the PPS controller determine whether work is
+    added at all, and whether requests of queued orders are bound as well.
     """
 
     def __init__(
@@ -46,7 +49,7 @@ class LateBinding(Observer):
         self._orders.append(order)
 
     def order_queued(self, order: Order) -> None:
-        """Record an order that joined a pool."""
+        """Record an order that was queued for a pick station."""
         self._queued.append(order)
 
     def bundle_assigned(self, bundle: Bundle) -> None:

@@ -102,7 +102,7 @@ class ForkedTrials:
 
 
 class Earnings(Observer):
-    """Computes the value of a trial."""
+    """Computes the value of a trial from what is achieved in it."""
 
     def __init__(self, goal: Goal, begin_s: float, horizon_s: float) -> None:
         self._goal = goal
@@ -125,26 +125,26 @@ class Earnings(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """Add the worth of the unit, times the share of the horizon that is left."""
+        """Add the value of the unit, times the share of the horizon that is left."""
         self._value += self._goal.units * self._left(time_s)
 
     def order_completed(self, order: Order) -> None:
-        """Add the worth of the order, times the share of the horizon that is left.
+        """Add the value of the order, times the share of the horizon that is left.
 
-        The cost of its overdue time within the horizon is subtracted.
+        The cost of the time for which it was overdue within the horizon is subtracted.
         """
         goal = self._goal
         self._value += goal.orders * self._left(order.completed_s)
         self._value -= goal.overdue_s * self._overdue_s(order, order.completed_s)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Add the worth of the units, times the share of the horizon that is left."""
+        """Add the value of the units, times the share of the horizon that is left."""
         self._value += self._goal.units_stored * bundle.units * self._left(bundle.stored_s)
 
     def value(self, world: World) -> float:
-        """Return the value, less the cost of distance and of the time for which orders are overdue.
+        """Return the value of the trial, less the costs of distance and of overdue orders.
 
-        For an order that is not completed, this time is counted up to now.
+        For an order that is not completed, the overdue time is counted up to now.
         """
         goal, value = self._goal, self._value
         if goal.overdue_s:

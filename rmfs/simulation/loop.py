@@ -40,7 +40,7 @@ class StalledError(RuntimeError):
 
 
 class Loop:
-    """Repeatedly advances traffic, calls what is due, and lets controllers decide.
+    """Repeatedly advances traffic, makes the callbacks that are due, and lets controllers decide.
 
     Everything at an instant is handled before the controllers are called. A run that is simulated
     in several calls has the same results as one simulated in one call.
@@ -145,8 +145,8 @@ class Loop:
         Returns
         -------
         Decision or None
-            The first decision up to then that must be made outside the simulation, which stops
-            there; None if there is none.
+            The first decision that must be made outside the simulation, at which the simulation
+            stops; None if no such decision comes up by that time.
         """
         return self._go_on(min(us_at(time_s), self._end_us))
 

@@ -115,7 +115,7 @@ class Outside:
         return self.taken < len(self.given) and self.given[self.taken][0] == question
 
     def drop_taken(self) -> None:
-        """Drop answers about prepared tasks, which the TA rule does not ask again."""
+        """Drop answers about prepared tasks, since the TA rule does not repeat these questions."""
         del self.given[: self.taken]
         self.taken = 0
 

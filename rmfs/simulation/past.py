@@ -1,4 +1,4 @@
-"""Orders from before the run, for rules that learn from past orders."""
+"""Orders from the time before the run, for rules that learn from past orders."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderConten
 
 
 class PastOrders:
-    """Draws the orders from before a run when they are needed."""
+    """Draws past orders, from the time before the run, when they are needed."""
 
     def __init__(self, scenario: Scenario, skus: SkuSet, seed: int) -> None:
         self._scenario, self._skus, self._seed = scenario, skus, seed

@@ -36,7 +36,8 @@ class RuleState:
 
     Robots, orders, pods and everything else in the world are stored by reference, not copied. So
     are the view, the parameters, and trackers, which follow events and do not change when a rule
-    decides. Of a call to an optimiser, only the rule's counts and its progress are saved.
+    decides. Of a call to an optimiser, only the numbers of handled and stale parts of its answer
+    are saved.
     """
 
     def keep(self, controller: Controller[Any], answer: Call | None) -> Kept:

@@ -72,7 +72,8 @@ def simulate(
         Parameters by dotted key, as for `--set`: `{"layout.robots": 16}`. A rule can also be given
         as a class: `{"controllers.psa.name": MyRule}`.
     overrides
-        The same as (path, value) pairs, for example `(["layout", "robots"], 16)`; `set` wins.
+        Parameters as (path, value) pairs, for example `(["layout", "robots"], 16)`; if `set` also
+        contains a parameter, that value is used.
     observers
         Notified of everything that happens, in addition to the recorder of the standard measures.
     measures
@@ -231,7 +232,7 @@ streams, remark, allow_not_well_formed, traffic_maker
         Raises
         ------
         InputError
-            If the pacing is `wall`, because a running solver cannot be copied.
+            If the pacing or that of path planning is `wall`: a copy could not continue identically.
         """
         return forking.fork(self)
 
@@ -241,7 +242,7 @@ streams, remark, allow_not_well_formed, traffic_maker
         Raises
         ------
         InputError
-            If the file cannot be written, or the pacing is `wall`.
+            If the file cannot be written, or the pacing or that of path planning is `wall`.
         """
         saving.save(self, Path(path))
 

@@ -52,7 +52,7 @@ class Hands(Protocol):
     """The pickers at pick stations (`rmfs.simulation.pickers`)."""
 
     def are_at(self, station: int) -> bool:
-        """Whether a picker is there; if not, `go_on` is called when one arrives."""
+        """Whether a picker is at a station; if not, `go_on` is called when one arrives."""
         ...
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
@@ -177,7 +177,7 @@ class PickService:
         self._finished.clear()
 
     def hand_on_held(self, order: Order, *, by_hand: bool = False) -> None:
-        """Pass on an order, or a part of one, that was refused before."""
+        """Pass on an order, or a part of one, that the outlet did not take before."""
         self._complete(order, by_hand)
         self._agenda.when_settled(self.go_on)
 
@@ -236,7 +236,7 @@ class ReplenishmentService:
 
 
 class VisitService:
-    """The service of a station of another kind: a pod stays for a while and is then sent away.
+    """The service of a station of a user-defined kind: a pod stays for a while, and then leaves.
 
     Each kind derives its own class, which defines how long pods stay and what happens at the end.
 

@@ -23,13 +23,13 @@ class ShortOrders(Observer):
 
     Only units that are in stock and not needed by orders at stations count as available. If they do
     not suffice for an order, it is cut to the available units or cancelled, depending on the
-    policy. An order that is in the pool of a station, or has been split, is already being served
-    and is not changed.
+    policy. An order that is queued for a station, or has been split, is already being served and
+    is not changed.
 
     Parameters
     ----------
     given
-        Parameters, with a policy other than waiting.
+        The scenario's table `orders.shortage`; its policy is `partial` or `cancel`.
     changed
         Called when an order has been cancelled.
     """
@@ -84,7 +84,7 @@ def short_orders(
     events: Events,
     changed: Callable[[], None],
 ) -> list[Observer]:
-    """Return a list with the observer that checks orders; empty if short orders just wait."""
+    """Return a list with the observer that checks orders; empty if such orders just wait."""
     if given.policy == "wait":
         return []
     return [ShortOrders(given, agenda=agenda, world=world, events=events, changed=changed)]

@@ -10,7 +10,7 @@ import numpy as np
 
 @dataclass(slots=True)
 class DecisionStatistics:
-    """Calls of the controllers of one decision problem, since the end of the warm-up or the start.
+    """Calls of the controllers of one decision problem; those in the warm-up are not kept.
 
     Attributes
     ----------

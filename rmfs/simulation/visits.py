@@ -1,4 +1,4 @@
-"""Visits: controllers that bring pods to stations of other kinds."""
+"""Visits: controllers that bring pods to stations of user-defined kinds."""
 
 from __future__ import annotations
 
@@ -26,9 +26,10 @@ S = TypeVar("S", bound=Station[Any])
 class VisitController(Observer, Generic[S]):
     """Base class of controllers that decide which pods go to the stations of a kind, and when.
 
-    It is asked about each robot that needs a task, before all other controllers, and observes the
-    run with the callbacks of `Observer`. It changes nothing itself; its decisions are applied by
-    the simulation. It must hold plain data, because a run can be copied or saved at any moment.
+    A controller is asked about each robot that needs a task, before all other controllers, and
+    observes the run with the callbacks of `Observer`. It changes nothing itself; its decisions are
+    applied by the simulation. It must hold plain data, because a run can be copied or saved at any
+    moment.
 
     Parameters
     ----------
@@ -66,7 +67,7 @@ class VisitController(Observer, Generic[S]):
 
 
 class Visits:
-    """Asks the controllers of other kinds of station in a layout, and applies their decisions."""
+    """Asks the controllers of user-defined kinds of station, and applies their decisions."""
 
     def __init__(self, world: World, view: View, dispatch: Dispatch, seed: int) -> None:
         self._world, self._view, self._dispatch = world, view, dispatch

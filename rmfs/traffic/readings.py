@@ -61,8 +61,9 @@ class Readings:
         Per waypoint, shape (N,): `visits` and `waiting_s`, and the part of them with a pod,
         `loaded_visits` and `loaded_waiting_s`. Per pair of waypoint and purpose that occurred,
         shape (M,): `stays_waypoint`, `stays_purpose`, `stays_visits` and `stays_waiting_s`. The
-        purpose is the number of the station for which a robot works, also on its way to the pod; S,
-        the number of stations, for storing or fetching a pod otherwise; S + 1 for everything else.
+        purpose is the number of the station for which a robot works, also while it fetches the pod.
+        It is S, the number of stations, if the robot stores a pod or fetches one for no station,
+        and S + 1 for everything else.
         """
         counted: dict[str, NDArray[Any]] = self._core.heat()
         at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])
@@ -129,9 +130,9 @@ class Readings:
 
         They are `plans` (legs), `plan_failures`, `replans`, `refusals` (runs requested by a rolling
         planner that were not free), `improvements`, `expansions`, `cost_tables`, and the wall time
-        `planning_s` in s; 0 unless plans take time, the simulated time `planning_charged_s` that
-        they took; and, 0 unless motions can be late, `motions`, `late_motions`, the total
-        `lateness_s`, and `repairs`.
+        `planning_s` in s. The simulated time `planning_charged_s` that plans took is 0 unless plans
+        take time. `motions`, `late_motions`, the total `lateness_s` and `repairs` are 0 unless
+        motions can be late.
         """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9
@@ -140,7 +141,7 @@ class Readings:
         return counts
 
     def plans(self) -> dict[str, NDArray[Any]]:
-        """Return the searches for plans of trips since time zero, if plans take time.
+        """Return the searches for plans of trips since time zero; empty if plans take no time.
 
         The columns are `robot`, `asked_us`, `begun_us`, `labels`, `took_us`, `found` and the wall
         time `wall_s` of the search.

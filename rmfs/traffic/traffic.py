@@ -180,7 +180,7 @@ class Traffic(Readings):
     def delay(self, robot: int, by_us: int, *, begun: bool = False) -> bool:
         """Postpone the rest of a robot's plan; the sequence in which robots use waypoints is kept.
 
-        Robots that use a waypoint after this one are postponed in turn if necessary.
+        Robots that use a waypoint after this robot are postponed in turn if necessary.
 
         Parameters
         ----------
@@ -255,9 +255,9 @@ class Traffic(Readings):
         least_us, most_us
             Shortest and longest delay in microseconds, uniformly distributed.
         repair
-            Whether a robot that a late robot makes wait is replanned, alone or ahead of the late
-            robot, if the sum of the arrival times of the replanned robots decreases. Without effect
-            with rolling planners.
+            Whether to replan each robot that has to wait for a late robot: alone or, if that does
+            not help, together with the late robot and ahead of it. New plans are kept if they
+            decrease the sum of arrival times. Without effect with rolling planners.
         seed
             Seed of the draws, below 2^64.
 
@@ -282,10 +282,10 @@ class Traffic(Readings):
         lazy: bool = False,
         each: bool = False,
     ) -> None:
-        """Let plans of trips take time from now on; a robot departs when its plan is there.
+        """Let plans of trips take time from now on; a robot departs when its plan is ready.
 
-        Only for planners that plan trip by trip. A plan is made with the reservations present when
-        a planner begins with it, departs after the time that it takes, and is reserved at once.
+        Only for planners that plan trip by trip. A plan avoids the reservations that exist when the
+        planner begins with it, starts after the time that planning takes, and is reserved at once.
 
         Parameters
         ----------
@@ -293,7 +293,7 @@ class Traffic(Readings):
             `fixed`, `work`, `wall` or `replay`.
         numbers
             `fixed`: microseconds per plan. `work`: microseconds per search, and per label. `wall`:
-            simulated time per wall time.
+            simulated seconds per second of wall time.
         tape
             `replay`: robot, start (us), labels and time taken (us) of each search of another run.
         period_us
@@ -408,7 +408,7 @@ class Traffic(Readings):
     def exchange_battery(self, robot: int, level_j: float) -> None:
         """Exchange the battery of a robot that stands still for one with `level_j` joules.
 
-        The gain counts as charged.
+        The energy gained counts as charged.
         """
         self._core.exchange_battery(robot, level_j)
 

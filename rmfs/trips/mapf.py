@@ -1,8 +1,8 @@
 """Robots and trips from the files of path-finding benchmarks.
 
 `.scen` (MovingAI): each line is a robot with its start and its only goal. `.agents` and `.tasks`
-(League of Robot Runners): starts of robots, and goals or chains of goals. All goals form one list
-in the order of the file; a robot that has reached its goal gets the next one.
+(League of Robot Runners): starts of robots, and goals or chains of goals. All goals of `.tasks`
+form one list in the order of the file; a robot that has reached its goal gets the next one.
 """
 
 from __future__ import annotations

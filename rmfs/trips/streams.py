@@ -1,7 +1,8 @@
 """Streams of trips: sequences of commands for robots.
 
 The commands of a robot depend on the seed and on its number of finished trips, never on how long
-these took, so that different planners drive the same trips.
+these took, so that different planners drive the same trips. Goals that all robots share are an
+exception: each goes to the first robot that needs one.
 """
 
 from __future__ import annotations

@@ -27,11 +27,11 @@ PAGE_PATIENCE_S = 10.0
 """Longest wall time, in s, that a run waits at its start for a page that watches it."""
 
 FAREWELL_S = 3.0
-"""Longest wall time, in s, for which pages can still load the end of a run."""
+"""Longest wall time, in s, for which pages can load the end of a run after it has ended."""
 
 
 def serve_runs(paths: list[Path], *, port: int = 0, open_browser: bool = True) -> None:
-    """Serve up to two runs, and a form that starts others, on loopback until interrupted.
+    """Serve up to two runs, and a form that starts further runs, on loopback until interrupted.
 
     Raises
     ------

@@ -31,12 +31,12 @@ PARTS: dict[str, instances.Kind] = {
 
 
 def names() -> dict[str, list[str]]:
-    """Return the names of the shipped `layout`, `scenario` and `controllers` files, by part."""
+    """Return the names of the shipped files of each part: `layout`, `scenario`, `controllers`."""
     return {part: instances.names(kind) for part, kind in PARTS.items()}
 
 
 def shipped(part: str, name: str) -> str:
-    """Return `name` after checking that it is shipped, as a page may not name files.
+    """Return `name` if it is that of a shipped file; a page may not name other files.
 
     Raises
     ------
@@ -61,8 +61,8 @@ def form(chosen: dict[str, str]) -> dict[str, Any]:
     -------
     dict
         `names` holds the possible choices, and `chosen` the present ones. `layout` and `scenario`
-        hold the `schema` and the `values` of their file, and `controllers` the decision `problems`
-        with their rules, and the `values`.
+        hold the `schema` and the `values` of their file; `controllers` holds the decision
+        `problems`, with their rules, and the `values`.
 
     Raises
     ------

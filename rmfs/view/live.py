@@ -199,8 +199,8 @@ class LiveRun:
     def news(self, known: Known, page: str = "") -> bytes:
         """Return the packed motion and events that a page does not know yet.
 
-        A row of motion replaces all that the page knows about the motion of the same robot after
-        the start of the row.
+        A row of motion replaces all that the page knows about the motion of the same robot from
+        the time at which the row starts.
 
         Parameters
         ----------
@@ -257,7 +257,7 @@ class LiveRun:
             self._disturb()
 
     def exchange(self, problem: str, table: Table) -> None:
-        """Install another controller at the present instant of the run.
+        """Install another controller for a decision problem at the present instant of the run.
 
         Parameters
         ----------
@@ -267,7 +267,7 @@ class LiveRun:
         Raises
         ------
         InputError
-            If the controller of the problem cannot be exchanged, there is no such rule, the rule
+            If the controller of this problem cannot be exchanged, there is no such rule, the rule
             does not fit the run or the other controllers, or the run has ended.
         """
         if problem not in set(Problem) - FIXED:

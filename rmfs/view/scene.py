@@ -1,6 +1,6 @@
 """The scene that a page draws: layout, motion and events of a run, as a header and flat arrays.
 
-Motion is not sampled: the page gets every piece of motion, and computes positions by the same
+Motion is not sampled: the page gets all rows of the trace, and computes positions by the same
 kinematics as the traffic core.
 """
 

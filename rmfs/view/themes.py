@@ -90,7 +90,8 @@ def themes_of(layout: Layout, visits: Mapping[str, str]) -> dict[str, Any]:
     Parameters
     ----------
     visits
-        Colours of robots whose task is a visit to a station of another kind, by task.
+        Colours of robots, by task, for tasks of visiting stations that are neither pick nor
+        replenishment stations.
     """
     return {
         name: {

@@ -59,7 +59,8 @@ class OrderBacklog:
     def units(self) -> NDArray[np.int32]:
         """Open units of each line, 0 where there is no line, shape (B, L).
 
-        All units are open, except those of a queued order that are already bound to a pod.
+        All units are open, except those already bound to a pod, which is possible if the order is
+        in a station's pool.
         """
         return self._units[: len(self.at_row)]
 
@@ -80,7 +81,7 @@ class OrderBacklog:
 
     @property
     def queued_at(self) -> NDArray[np.int32]:
-        """Pick station in whose pool each order is queued, or -1, shape (B,)."""
+        """Pick station for which each order is reserved (in its pool), or -1, shape (B,)."""
         return self._queued_at[: len(self.at_row)]
 
     def add(self, order: Order) -> None:
@@ -131,7 +132,7 @@ class OrderBacklog:
             self._units[row, column] = line.open_units
 
     def queue_changed(self, order: Order) -> None:
-        """Update the entry for an order that has joined or left a station's pool."""
+        """Update `queued_at` for an order that has joined or left the pool of a station."""
         self._queued_at[self._row_of[order.index]] = order.queued_at
 
     def after(self, index: int) -> list[Order]:
@@ -173,7 +174,8 @@ class OrderBacklog:
 class BundleBacklog:
     """Bundles that are not assigned yet.
 
-    A bundle is assigned when its station is chosen and the choice of its pod is released.
+    RPS promises a bundle to a pod, and later releases this choice, perhaps for several bundles at
+    once; ROA chooses the station. When both have been done, the bundle is assigned.
 
     Attributes
     ----------

@@ -22,7 +22,10 @@ class Levels(Protocol):
     """The part of the traffic model that knows the levels of batteries."""
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return energies per robot by name, in J; `level_j` is the energy in each battery."""
+        """Return arrays of energies in J, with one value per robot, by name of the quantity.
+
+        `level_j` is the energy in each battery.
+        """
         ...
 
     def level_j(self, robot: int) -> float:
@@ -95,7 +98,7 @@ class Batteries:
         self._levels.exchange_battery(robot, share * self.capacity_j)
 
     def strand(self, robot: int, now_s: float) -> None:
-        """Record that a robot is stranded, as its level fell below the minimum."""
+        """Record that a robot is stranded because its level fell below the minimum."""
         self.stranded.add(robot)
         self.strandings.append((now_s, robot))
 

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False)
 class ChargeTask(VisitTask):
-    """The task of going to an energy station without a pod.
+    """The task of going to a charger or swap station without a pod.
 
     Attributes
     ----------
     until_share
-        Battery level (share of capacity) at which the robot leaves a plug-in place.
+        Battery level (share of capacity) at which the robot leaves a charger.
     """
 
     kind = "charge"

@@ -32,8 +32,8 @@ def read_only(array: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
 class Inventory:
     """Stock of K SKUs on P pods.
 
-    Spaces of units are multiples of 2**-20 (see `rmfs.scenario`), so their sums are exact in any
-    order and loads never drift.
+    The space of a unit is a multiple of 2**-20 space units (see `rmfs.scenario`), so sums are exact
+    in any order and loads never drift.
 
     Parameters
     ----------

@@ -1,4 +1,7 @@
-"""Operations on orders: they arrive, queue, take slots, are cut, and are completed."""
+"""Operations on orders: they arrive, join a pool, take slots, are cut, and are completed.
+
+The pool of a pick station consists of orders of the backlog that are reserved for it.
+"""
 
 from __future__ import annotations
 
@@ -32,12 +35,12 @@ class OrderOperations(WorldState):
         Parameters
         ----------
         keep
-            Remaining units of each SKU; 0 for the others.
+            Units that remain, by SKU; a SKU without an entry loses all its units.
 
         Raises
         ------
         ValueError
-            If the order is not in the backlog, is in a pool, or has been split.
+            If the order is not in the backlog, is in the pool of a station, or has been split.
         """
         if order not in self.orders or order.queued_at >= 0 or order.parts:
             raise ValueError(f"order {order.index} cannot lose units")
@@ -52,7 +55,7 @@ class OrderOperations(WorldState):
             order.cancelled_s = self.now_s
 
     def queue_order(self, order: Order, station: int) -> None:
-        """Add an order of the backlog to the pool of a pick station.
+        """Add an order to the pool of a pick station, that is, reserve the order for this station.
 
         The order needs no slot and stays in the backlog, but its requests can be bound to pods.
 
@@ -73,7 +76,7 @@ class OrderOperations(WorldState):
         self.orders.queue_changed(order)
 
     def unqueue_all(self) -> None:
-        """Empty all pools."""
+        """Empty the pools of all pick stations."""
         for station in self.pick_stations:
             for order in list(station.queued.values()):
                 self.unqueue_order(order)
@@ -89,8 +92,8 @@ class OrderOperations(WorldState):
     def assign_order(self, order: Order, station: int) -> Order:
         """Assign an order of the backlog to a pick station and open its extract requests.
 
-        Requests of a queued order that are already bound to pods stay bound. If a part of the order
-        is at the station already, the remaining lines join that part.
+        Requests of an order in the station's pool that are already bound to pods stay bound. If a
+        part of the order is at the station already, the remaining lines join that part.
 
         Returns
         -------
@@ -100,8 +103,8 @@ class OrderOperations(WorldState):
         Raises
         ------
         ValueError
-            If the order is queued at another station, or needs a slot and the station is inactive
-            or has none free.
+            If the order is in the pool of another station, or needs a slot and the station is
+            inactive or has none free.
         """
         target = self.pick_stations[station]
         joins = order.index in target.orders

@@ -57,7 +57,7 @@ class Order:
     station
         The pick station, or -1 while in the backlog.
     queued_at
-        The pick station in whose pool an order of the backlog is queued, or -1.
+        The pick station for which an order of the backlog is reserved (in its pool), or -1.
     whole
         The order of which this is a part; None if it is not a part.
     parts
@@ -118,7 +118,7 @@ class Order:
         Parameters
         ----------
         keep
-            Remaining units of each SKU; 0 for the others.
+            Units that remain, by SKU; a SKU without an entry loses all its units.
         """
         for line in self.lines:
             left = keep.get(line.sku, 0)

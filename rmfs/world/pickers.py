@@ -181,7 +181,7 @@ class Staff:
         return fatigue
 
     def factor(self, picker: Picker, now_s: float) -> float:
-        """Return the factor of learning, speed and fatigue in the time of the next unit."""
+        """Return the factor by which learning, speed and fatigue scale the next unit's time."""
         made = learned(self.given.learning, picker.units) / picker.speed
         if self.given.fatigue is not None:
             made *= 1.0 + self.given.fatigue.slowdown * self.fatigue(picker, now_s)
@@ -190,7 +190,7 @@ class Staff:
     def unit_s(self, station: int, now_s: float) -> float:
         """Return the current mean time of a unit at a station, in s; infinite without a picker.
 
-        Layers, faces and errors are left out.
+        The effects of layers, faces and errors are left out.
         """
         picker = self.at_station[station]
         if picker is None:

@@ -1,4 +1,7 @@
-"""Open extract requests of the orders at a pick station, or in its pool, by SKU."""
+"""Open extract requests, by SKU, of the orders at a pick station, or of those in its pool.
+
+The pool of a station consists of orders of the backlog that are reserved for it.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class OpenRequests:
-    """Units needed by the orders at one station, or in its pool, and not yet bound to a pod.
+    """Units needed by the orders at a station, or by those in its pool, and not yet bound to a pod.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class Robot:
     task
         Its current task; None if it needs one.
     station
-        The station at whose head it stands, or -1.
+        The station at the head of whose queue it stands, or -1.
     places
         Storage locations reserved for it, where it stands or is going to stand.
     prepared

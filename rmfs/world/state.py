@@ -53,11 +53,13 @@ class WorldState:
     work_stations
         All pick and replenishment stations, to which rules assign work, in the common numbering.
     stations
-        All stations, including the `other_stations` of other kinds, which come last.
+        All stations, including those that are neither pick nor replenishment stations, which come
+        last.
     need
         Open units of the orders at each pick station, per SKU, shape (S, K).
     queued_need
-        Open units of the orders in the pool of each pick station, per SKU, shape (S, K).
+        Open units of the orders of the backlog that are reserved for each pick station (in its
+        pool), per SKU, shape (S, K).
     lines
         Number of order lines of the open orders per pick station and SKU, picked or not, shape
         (S, K).

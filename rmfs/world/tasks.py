@@ -43,11 +43,11 @@ class Keeps(Protocol):
         ...
 
     def start_visit(self, task: VisitTask) -> VisitTask:
-        """Start the task of bringing a pod to a station of another kind."""
+        """Start bringing a pod to a station other than a pick or replenishment station."""
         ...
 
     def start_charge(self, task: Any) -> Task:
-        """Start the task of going to an energy station."""
+        """Start the task of going to a charger or swap station."""
         ...
 
     def start_park(self, robot: Robot, place: int) -> Task:
@@ -117,7 +117,7 @@ class Task:
 
     @property
     def stores(self) -> bool:
-        """Whether the task ends when its pod stands at its place."""
+        """Whether the task ends with storing its pod at `place`."""
         return self.place >= 0 and self.pod >= 0
 
     @property
@@ -163,7 +163,7 @@ class PickTask(StationTask):
 
     @property
     def can_pick(self) -> bool:
-        """Whether the order of a pick has a slot at the station and is not just in its pool."""
+        """Whether the order of a pick has a slot at the station, not just a place in its pool."""
         return any(pick.line.order.station >= 0 for pick in self.picks)
 
 
@@ -187,10 +187,10 @@ class ReplenishTask(StationTask):
 
 @dataclass(slots=True, eq=False)
 class VisitTask(StationTask):
-    """The task of bringing a pod to a station of another kind; each kind derives its own class.
+    """The task of bringing a pod to a station other than a pick or replenishment station.
 
-    The controller of the stations decides whether a visit is needed. The task is possible if the
-    pod is available or already carried.
+    Each kind of station derives its own class. The controller of the stations decides whether a
+    visit is needed. The task is possible if the pod is available or already carried.
     """
 
     kind = "visit"

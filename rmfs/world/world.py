@@ -111,14 +111,14 @@ class World(OrderOperations):
     def extend_queued(
         self, task: PickTask, order: Order, *, whole: bool, late_bound: bool = True
     ) -> int:
-        """Bind open requests of a queued order to the pod of a task; return their number.
+        """Bind open requests of an order in a station's pool to the pod of a task; return how many.
 
         None are bound if the pod is already at the head of the station's queue.
 
         Parameters
         ----------
         whole
-            Bind requests only if the pod serves all open requests of the order.
+            Whether to bind requests only if the pod serves all open requests of the order.
         """
         if self.robots[task.robot].station == task.station:
             return 0
@@ -139,7 +139,7 @@ class World(OrderOperations):
         return bound
 
     def give_back(self, task: PickTask) -> int:
-        """Reopen the requests of queued orders that a task has bound; return their number."""
+        """Reopen the requests of orders without a slot that a task has bound; return how many."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)
@@ -163,7 +163,7 @@ class World(OrderOperations):
         return len(bundles)
 
     def start_visit(self, task: VisitTask) -> VisitTask:
-        """Start the task of bringing a pod to a station of another kind."""
+        """Start bringing a pod to a station other than a pick or replenishment station."""
         robot = self.robots[task.robot]
         self._begin_pod_task(robot, task)
         self.stations[task.station].tasks[task.pod] = task
@@ -238,12 +238,14 @@ class World(OrderOperations):
         self.storage.set_down(pod, place)
 
     def pick_unit(self, task: PickTask, chosen: Pick | None = None) -> Pick:
-        """Pick and return the next unit of a task whose order is at the station.
+        """Pick the next unit of a task, and return it.
+
+        Units of orders that have no slot at the station yet are passed over.
 
         Parameters
         ----------
         chosen
-            A unit of the task to be picked instead. Default: the next one.
+            The unit of the task to be picked. Default: the next one.
         """
         picks = task.picks
         pick = picks[0] if chosen is None else chosen

@@ -26,8 +26,8 @@ def answer(
     values
         Values of the solution as plain arrays and numbers; None if it has none.
     scale
-        Number by which the absolute gap is divided to give the relative one. Default: the absolute
-        objective.
+        Number by which the absolute gap is divided to give the relative one. Default: the
+        absolute value of the objective.
     """
     return Answer(
         solution=values if solution.found else None,

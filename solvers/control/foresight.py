@@ -22,10 +22,11 @@ _PRIOR_H = 0.1
 class Foresight:
     """Forecasts visits to pods; results are cached, since the whole stock is evaluated.
 
-    Units needed within the horizon are those of waiting orders and those of new orders. The units
-    of new orders are the past rate of picked units, distributed over SKUs in proportion to the
-    units ordered so far. To stabilise the estimate at the beginning, six minutes of uninterrupted
-    picking and twenty visits of two units are counted in advance.
+    Units needed within the horizon are those ordered and not yet picked, and those of new orders.
+    New orders are expected to ask for as many units per hour as have been picked per hour so far,
+    distributed over SKUs in proportion to the units ordered so far. To stabilise the estimate at
+    the beginning, six minutes of uninterrupted picking and twenty visits of two units are counted
+    in advance.
 
     Parameters
     ----------

@@ -92,7 +92,7 @@ class JointAllocation(TaskAllocation[P]):
     # --- for the consult ------------------------------------------------------------------------
 
     def serves(self, pod: int, station: int) -> bool:
-        """Whether there is work for a pod at a station of either kind."""
+        """Whether there is work for a pod at a pick or replenishment station."""
         return self._heuristic.serves(pod, station)
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
@@ -100,9 +100,9 @@ class JointAllocation(TaskAllocation[P]):
         return -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Choose the pod by the heuristic."""
+        """Choose the pod by PPS lexicographic."""
         return self._heuristic.replenishment_pod(robot, station)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose the next station of a carried pod by the heuristic."""
+        """Choose the next station of a carried pod by PPS lexicographic."""
         return self._heuristic.next_station(robot, stations)

@@ -75,7 +75,7 @@ class Splitting:
         return self._is_settled(order) or (self._orders >= 1 and self._slots >= self._need(order))
 
     def offers(self) -> Callable[[Order], bool]:
-        """Choose the orders that may be split now; return a function that tests for such an order.
+        """Choose the orders that may be split now; return a test of whether an order is among them.
 
         Orders that are already split, or have a single line, always pass.
         """

@@ -93,12 +93,12 @@ class StockingParameters(SearchParameters):
 
 
 class StockingControl(ReplenishmentPodSelection[StockingParameters]):
-    """Decides jointly which bundles are stored in which pods and where; ROA must be its dummy.
+    """Decides jointly which bundles are stored in which pods and where; ROA must be `dummy`.
 
     The value of a bundle is the robot time that its units will save by raising the pile-on. It is
-    high if its SKU is in demand and short, and higher in a pod with SKUs that are ordered together
+    high if its SKU is in demand and scarce, and higher in a pod with SKUs that are ordered together
     with it. This is weighed against the trip of the pod to a station with room, which counts once
-    for all its bundles; a pod that is brought to a station anyway takes more bundles for free. The
+    for all its bundles; a pod that is brought to a station anyway takes bundles for free. The
     optimiser is asked when bundles wait and a station has room, at most once per `buffer_s`; if it
     fails, the greedy rule decides.
     """

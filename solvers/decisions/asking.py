@@ -1,4 +1,4 @@
-"""Conversion of a controller's question to a file, and solution of that file as in the run."""
+"""Conversion of a controller's question to a `Decision`, and solving it again as in the run."""
 
 from __future__ import annotations
 

@@ -8,8 +8,8 @@ A file names its sizes (`N` products, `R` racks, `O` orders, `RS` shelves of a r
 
 The format is described by the authors
 (homepages.dcc.ufmg.br/~arbex/mobileRacks/rackInstancesDescription.txt); their files are not
-included here. A file does not contain the number of pickers and the orders per picker, which are
-given to make a question.
+included here. A file does not contain the number of pickers and of orders per picker; the caller
+states them.
 """
 
 from __future__ import annotations

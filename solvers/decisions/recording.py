@@ -51,7 +51,7 @@ class QuestionListener(Observer):
         self._told(call)
 
     def run_ended(self, time_s: float) -> None:
-        """Pass on the questions whose answers have not taken effect."""
+        """Pass on the questions whose answers had not taken effect when the run ended."""
         for call in self._open.values():
             self._told(call)
         self._open.clear()

@@ -161,12 +161,12 @@ slots         | whole | S   | order slots, 1 or more
 coming        | whole | F   | pods under way; those of a station in order of arrival
 coming_to     | whole | F   | station of each pod under way
 order_station | whole | O   | station at which an order is open, or -1 if it waits
-order_until   | whole | O   | last visit under way with units bound for an open order, or -1
-order_worth   | real  | O   | worth of completing an order, s of robot time
+order_until   | whole | O   | last visit under way that brings units for an open order, or -1
+order_worth   | real  | O   | value of completing an order, s of robot time
 line_order    | whole | L   | order of each line
 line_sku      | whole | L   | SKU of each line
 line_units    | whole | L   | units of each line
-line_worth    | real  | L   | worth of serving a line, s of robot time
+line_worth    | real  | L   | value of serving a line, s of robot time
 stock         | whole | P K | unreserved units per pod and SKU
 cost          | cost  | P S | cost of a new visit of a pod, s of robot time
 visits        | whole |     | maximum number of new visits per station
@@ -270,14 +270,14 @@ gain       | real  | G   | share of the capacity charged per slot at constant po
 swapped    | real  | G   | level after a swap, which takes a slot; 0: the group charges instead
 wanted     | whole | Q T | robots needed for work in a slot, in each of Q equally likely cases
 slot_s     | real  |     | length of a slot, s
-worth_s    | real  |     | worth of a full battery at the end, s of robot time
+worth_s    | real  |     | value of a full battery at the end, s of robot time
 longest    | whole |     | maximum number of slots of a stay
 taper_from | real  |     | level from which charging slows down; 1: never
 full       | real  |     | level that counts as full
 least      | real  |     | level below which no robot should fall
 short_s    | real  |     | cost of falling below `least`, s per share of the capacity
-idle       | real  |     | cost of time away when not needed for work, as a share of the usual cost
-curve      | real  |     | additional worth of energy in an empty battery against a full one
+idle       | real  |     | cost of time away of a robot that no work needs, as a share of the usual
+curve      | real  |     | value of energy: 1 + curve times the mean if empty, 1 - curve if full
 """
         ),
         fields_of(

@@ -32,7 +32,7 @@ class Methods(Generic[D, V]):
     default
         Name of the method used by default.
     rule
-        Name of the fast heuristic that the others start from; empty if there is none.
+        Name of the fast heuristic that the other methods start from; empty if there is none.
 
     Attributes
     ----------

@@ -1,7 +1,8 @@
 """Mixed-integer linear programs in matrix form, and a builder that fills them in blocks.
 
-A model is formulated once as a `LinearProgram`, which `rmfs.solvers.models.backends` pass to the
-solvers. Building is vectorised: one call per family of columns or rows.
+A model is formulated once as a `LinearProgram`, which the back ends of
+`rmfs.solvers.models.backends` pass to the solvers. Building is vectorised: one call per family of
+columns or rows.
 """
 
 from __future__ import annotations
@@ -205,7 +206,8 @@ class ProgramBuilder:
 
         Returns
         -------
-        The program; rows are sorted by column, and entries in the same position are added up.
+        The program; the entries of a row are sorted by column, and those in the same position are
+        added up.
         """
         row = _joined([entry[0] for entry in self._entries], np.int64)
         column = _joined([entry[1] for entry in self._entries], np.int64)

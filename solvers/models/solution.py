@@ -67,10 +67,10 @@ class Limits:
     Parameters
     ----------
     deterministic_s
-        Limit of CP-SAT in its own deterministic seconds (roughly a second of one core, but counted
-        in operations). Default: none.
+        Limit of CP-SAT in its own deterministic seconds (each roughly a second of one core, but
+        counted in operations). Default: none.
     nodes
-        Limit of a HiGHS branch-and-bound in nodes. Default: none (to optimality).
+        Limit of HiGHS in nodes of its branch and bound. Default: none.
     iterations
         Limit of an LP, assignment, flow or interior-point solve, or of a local search, in its
         iterations. Default: none.
@@ -113,7 +113,7 @@ class Solution(Generic[V_co]):
         The decision; None if `status` is INFEASIBLE or LIMIT.
     objective
         Value of the model's objective function (never the number that a solver reports);
-        `sense.worst` without values.
+        `sense.worst` if there are no values.
     bound
         A proven bound on the best objective: below it when minimising, above it when maximising;
         ``-sense.worst`` if nothing is known.
@@ -124,14 +124,14 @@ class Solution(Generic[V_co]):
     wall_s
         Wall-clock seconds of the whole call, including building. Never used in results.
     build_s
-        The part spent building the solver's model from the arrays.
+        The part of `wall_s` spent building the solver's model from the arrays.
     work
         Deterministic work spent, in the back end's unit (`WORK_UNITS`).
     sense
         Whether the objective is minimised or maximised. Default: minimised.
     built
-        Nonzeros of the programs passed to a solver, plus other building work, converted to the
-        number of nonzeros that takes the same time. Deterministic, like `work`.
+        Nonzeros of the programs passed to a solver, plus other building work, expressed as the
+        number of nonzeros that would take the same time. Deterministic, like `work`.
 
     Raises
     ------
@@ -286,7 +286,7 @@ WORK_UNITS = {
     "min_cost_flow": "arcs",
     "rounding": "simplex iterations",
     "dynamic": "states expanded",
-    "visits": "lines looked at for the visits of a station",
-    "insertions": "positions looked at for tasks",
+    "visits": "stock entries and lines examined",
+    "insertions": "positions examined for tasks",
 }
-"""The unit of `Solution.work` per back end; heuristics count under "rule"."""
+"""The unit of `Solution.work` per back end; the entry of heuristics is "rule"."""

@@ -207,8 +207,8 @@ exponential. Each figure comes from {experiments:,} experiments.
 
 - **t**, **bootstrap**: how often a 95 % interval of a fixed number of seeds covers the true mean.
 - **sequential**: how often an interval covers the true mean if seeds are added to the number in the
-  column *seeds* until its half width is below 2 % of the mean. The next column is the mean number
-  of seeds that were needed.
+  column *seeds* until the half width of the interval is below 2 % of the mean. The next column is
+  the mean number of seeds that were needed.
 - **false alarms**: how often at least one arm is found to differ from the baseline at the 5 %
   level although all arms have the same mean (paired t tests, for five arms with Holm's correction).
 

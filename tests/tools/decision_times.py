@@ -2,7 +2,7 @@
 
 `python -m tests.tools.decision_times` writes the page docs/decision-times.md. Every rule works
 in a run of its own for five minutes, beside the default rules: on the layout of the
-path-planning study with 128 robots and 1,965 pods, 12 pick and 20 replenishment stations, 1,000
+path-planning study with 128 robots and 1,965 pods, 20 pick and 12 replenishment stations, 1,000
 SKUs, and always 200 orders and 200 bundles waiting. A call lasts from the question to the last
 answer; the time in which other controllers were consulted is left out.
 """
@@ -38,17 +38,17 @@ LIMIT_MS = 1.0
 HEAD = """\
 # How long decisions take
 
-Times are milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 12 pick
-and 20 replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 200 bundles. Each
+Times are milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 20 pick
+and 12 replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 200 bundles. Each
 rule is measured in a run of its own, with the default rules for all other problems.
 
 A *call* asks a controller once and may result in several decisions or in none. The column *median,
-decision* divides the time of each call that resulted in decisions by their number, and shows the
-median of these quotients (of all calls if none resulted in a decision). The other columns are mean,
-95 % quantile and maximum of the times of all calls. If a controller consults others, their time is
-not counted for it. Rows such as *only age* are PPS `lexicographic` with that criterion first, ties
-broken at random. In the row *all pooled orders count*, PPS considers all orders in the pools of POA
-`queue`, not only those that a pod completes. This page is written by
+decision* shows the median of the time per decision: the time of a call divided by the number of its
+decisions. Calls without decisions count only if no call resulted in a decision. The other columns
+are mean, 95 % quantile and maximum of the times of all calls. If a controller consults others,
+their time is not counted for it. Rows such as *only age* are PPS `lexicographic` with that
+criterion first, ties broken at random. In the row *all pooled orders count*, PPS considers all
+orders in the pools of POA `queue`, not only those that a pod completes. This page is written by
 `python -m tests.tools.decision_times`.
 
 For every rule, the median should stay below one millisecond. The benchmarks

@@ -42,9 +42,9 @@ SITES = {
     "default": ("default", 40.0),
     "default-32": ("default", 40.0),
     "study-32": ("pp-minimal", 30.0),
-    "study-tiers": ("pp-minimal", 20.0),
-    "large": ("large-arrivals", 20.0),
-    "study-128": ("pp-minimal", 20.0),
+    "study-tiers": ("pp-minimal", 12.0),
+    "large": ("large-arrivals", 12.0),
+    "study-128": ("pp-minimal", 12.0),
 }
 """Scenario and simulated seconds for every shipped layout: less where a run costs more."""
 

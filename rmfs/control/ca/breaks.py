@@ -41,7 +41,7 @@ class BreaksParameters(LevelParameters):
 
 
 class Breaks(ByLevel[BreaksParameters]):
-    """Sends robots without work to charge during breaks; else, only those with a low level.
+    """Sends robots without work to charge during breaks, and at other times if their level is low.
 
     This is known as interim charging. Robots in excess of the charging places wait in queues.
     """

@@ -1,4 +1,4 @@
-"""Shared parts of CA rules: charge levels, choice of a charging place, and handing it over."""
+"""Shared parts of CA rules: charge levels, and how robots choose and give up charging places."""
 
 from __future__ import annotations
 

@@ -22,11 +22,12 @@ class OpportunityParameters(LevelParameters):
     """Parameters of CA opportunity."""
 
     below_share: Share = 0.25
-    """Below this share of the capacity, a robot charges even if there is work."""
+    """A robot charges if its level is below this share of the capacity, even if there is work."""
     until_share: Level = 0.8
     """Level (share of capacity) at which a charging robot leaves its place at the latest."""
     idle_below_share: Share = 0.75
-    """If a place is free, a robot at rest charges below this share of the capacity."""
+    """A robot at rest charges if a place is free and its level is below this share of the
+    capacity."""
     leave_above_share: Share = 0.4
     """While work waits and no robot is at rest, charging robots are called back, one at a time, if
     their level is above this share of the capacity and suffices for any task."""

@@ -70,7 +70,7 @@ class Contest:
         return [at_row[row] for row in self.rows.tolist()]
 
     def claimed(self) -> NDArray[np.int32]:
-        """Return the units per SKU that orders ahead of the contest need, shape (K,).
+        """Return how many units of each SKU are needed by orders ahead of the contest, shape (K,).
 
         These orders have a slot at the station or, if the contest is for the pool, are in the pool
         already. Only units that are not yet bound to a pod count.
@@ -106,7 +106,7 @@ class Contest:
         return [pods[place] for place in nearest_first.tolist()], metres[nearest_first]
 
     def completed_by(self, pod: int) -> NDArray[np.bool_]:
-        """Return which orders a pod at the station, or on its way there, completes, shape (N,).
+        """Return which orders are completed by a pod at the station or on its way there, (N,).
 
         The pod must have all units that the order still needs, in addition to those that orders
         with a slot need; and no units of another pod may be bound to the order.
@@ -122,7 +122,7 @@ class Contest:
         return completes
 
     def completed_by_all(self) -> NDArray[np.bool_]:
-        """Return which orders all pods at the station or on their way complete together, (N,).
+        """Return which orders are completed by all `inbound` pods together, shape (N,).
 
         The pods must have all units that the order still needs, in addition to those that `claimed`
         counts.

@@ -111,12 +111,12 @@ class Size(Parameters):
 
 
 class Completable(Parameters):
-    """Prefers orders that pods on their way to the station complete."""
+    """Prefers orders that pods at the station, or on their way there, can complete."""
 
     criterion: Literal["completable"] = "completable"
     by: Literal["nearest-pod", "all-pods"] = "nearest-pod"
-    """Which pods are to complete an order: the nearest pod alone, with no other pod bound to the
-    order (`nearest-pod`), or all pods together (`all-pods`)."""
+    """Which pods must complete the order: the nearest pod alone, if no unit of the order is bound
+    to another pod (`nearest-pod`), or all pods together (`all-pods`)."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
         """Return 1 for orders that the pod or pods complete, else 0."""
@@ -165,7 +165,10 @@ class InboundMatches(Parameters):
 
 
 class Related(Parameters):
-    """Prefers orders with the largest share of lines whose SKU the orders to be joined contain."""
+    """Prefers orders with the largest share of lines whose SKU other orders contain, too.
+
+    The other orders are those in the pool or at the station that the order is to join.
+    """
 
     criterion: Literal["related"] = "related"
 

@@ -45,8 +45,8 @@ class _Visit:
 class FastLane:
     """Assigns orders of the backlog to stations whose current pod can complete them.
 
-    Stations are considered in order of their numbers, and orders in order of `rank`. Units of the
-    pod that orders already at the station need are not available to others.
+    Stations are considered in order of their numbers, and orders in order of `rank`. Units that
+    orders already at the station need from the pod are not available to other orders.
 
     Parameters
     ----------

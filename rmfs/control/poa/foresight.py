@@ -25,10 +25,10 @@ class ForesightParameters(Parameters):
     """Parameters of POA foresight."""
 
     score: Score = "matches"
-    """Primary score. `matches`: units of the order that spare stock on inbound pods can serve.
-    `depletion`: the same, plus 1 for each line of which an inbound pod has exactly the number of
-    units needed. `surplus`: `matches`, plus 1 for each line of which an inbound pod has at least
-    that number. `due-time`: the earlier the due time, the higher."""
+    """Primary score. `matches`: number of the order's units for which pods at the station or on
+    their way there have spare stock. `depletion`: the same, plus 1 for each line of which one of
+    these pods has exactly the number of units needed. `surplus`: `matches`, plus 1 for each line of
+    which one of them has at least that number. `due-time`: the earlier the due time, the higher."""
     tie_breaker: Score = "due-time"
     """Secondary score, which breaks ties of the primary score."""
 
@@ -38,8 +38,8 @@ class Foresight(Filling[ForesightParameters]):
 
     Ties are broken by the secondary score, then in favour of the station with the most free slots,
     the station with the lowest number, and the order that arrived first. Stock is spare if orders
-    already at the station do not need it. The additional points of `depletion` and `surplus` are
-    given for each pod separately, whether or not other orders need its units.
+    already at the station do not need it. For the additional points of `depletion` and `surplus`,
+    all available units of a pod count, even those that other orders need.
     """
 
     parameters_model = ForesightParameters

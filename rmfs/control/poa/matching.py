@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def line_matches(view: View, station: int) -> NDArray[np.int32]:
-    """Return the units of each order line that spare stock on inbound pods can serve, (B, L).
+    """Return for how many units of each order line inbound pods have spare stock, shape (B, L).
 
     Inbound pods are at the station or on their way there. Their spare stock is what they have
     available in addition to the units that orders at the station still need from pods.
@@ -28,7 +28,7 @@ def line_matches(view: View, station: int) -> NDArray[np.int32]:
 
 
 def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
-    """Return the units of each order that spare stock can serve at each station, shape (S, B).
+    """Return, per station, for how many units of each order inbound pods have spare stock, (S, B).
 
     `line_matches` explains which stock is spare.
     """

@@ -113,7 +113,7 @@ class DueTime(OrderRule):
 
 
 class WorkParameters(OrderRuleParameters):
-    """Parameters of POA rules that compare an order's time left until it is due with its work."""
+    """Parameters of POA rules that compare the time until an order is due with its work."""
 
     line_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
     """Work per order line in seconds, as an estimate of the time until its pod arrives."""

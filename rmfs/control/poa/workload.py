@@ -16,7 +16,8 @@ class WorkloadParameters(Parameters):
     """Parameters of POA workload."""
 
     station: Literal["least-busy", "most-busy"] = "least-busy"
-    """Choice of the station: the fewest (`least-busy`) or the most (`most-busy`) open orders."""
+    """Choice of the station: the one with the fewest (`least-busy`) or the most (`most-busy`) open
+    orders."""
 
 
 class Workload(Filling[WorkloadParameters]):

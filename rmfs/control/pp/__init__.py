@@ -65,7 +65,7 @@ def planner_settings(choice: Choice, seed: int) -> PlannerSettings:
     choice
         Choice for the problem PP.
     seed
-        Seed of the planner's random decisions, such as the hops of robots in a deadlock.
+        Seed of the planner's random decisions, such as the moves of robots that resolve a deadlock.
     """
     controller = choice.controller
     assert issubclass(controller, PathPlanning)

@@ -14,14 +14,14 @@ class PibtParameters(RollingParameters):
     """Maximum number of straight runs that a robot is granted at once. Values above 1 have no
     effect, since PIBT plans one run at a time."""
     detour_s: float = pydantic.Field(30.0, gt=0)
-    """Maximum time, in seconds, by which the path that starts with a run may exceed the best
-    path."""
+    """Maximum detour, in seconds: a run is tried only if the quickest path that starts with it
+    takes at most this much longer than the quickest path of all."""
     choices: int = pydantic.Field(8, ge=1)
     """Maximum number of straight runs that a robot tries, the best first."""
 
 
 class Pibt(PathPlanning[PibtParameters]):
-    """PIBT: chooses each robot's next run, after robots in the way have left, if they can."""
+    """PIBT: chooses each robot's next run; robots in its way first move aside, if they can."""
 
     parameters_model = PibtParameters
     planner = "pibt"

@@ -15,10 +15,10 @@ class TimeWindowsParameters(Parameters):
     """Maximum number of labels (partial paths) in a search; if no path is found by then, the robot
     waits until all planned motion is over."""
     improve_labels: int = pydantic.Field(0, ge=0)
-    """If a plan is late, it and the plans of robots in front of it are made anew, each with at most
-    this many labels; 0: never."""
+    """Maximum number of labels per plan when plans are improved: if a new plan delays its robot by
+    more than 2 s, this robot and those directly in front of it are planned again; 0: never."""
     swift: bool = False
-    """Whether to use faster searches, whose paths may arrive slightly later than the earliest."""
+    """Whether to use faster searches; robots may then arrive slightly later than necessary."""
     swift_from: int = pydantic.Field(300, ge=0)
     """Mean number of labels per plan above which the run changes to faster searches even if `swift`
     is false; 0: never."""

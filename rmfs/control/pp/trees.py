@@ -24,10 +24,10 @@ class PbsParameters(TreeParameters):
 
 
 class Cbs(PathPlanning[TreeParameters]):
-    """CBS (conflict-based search): of two conflicting robots, one gives way; both are tried.
+    """CBS (conflict-based search): of two conflicting robots, one gives way.
 
-    The most promising choice is examined first. Paths are planned up to the destinations, without a
-    horizon.
+    Both choices are examined, in a search tree whose most promising node comes first. Paths are
+    planned up to the destinations, without a horizon.
     """
 
     parameters_model = TreeParameters

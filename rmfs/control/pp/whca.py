@@ -20,8 +20,8 @@ class WhcaVolatileParameters(WhcaParameters):
     """Parameters of the volatile variant."""
 
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """Time steps, in seconds, in which a robot of higher priority waits until others have made
-    room."""
+    """Unit of waiting time, in seconds: a robot of higher priority waits for a multiple of it until
+    others have made room."""
     rounds: int = pydantic.Field(10, ge=1)
     """Maximum number of planning rounds per call; after the last round, robots without a path
     wait."""

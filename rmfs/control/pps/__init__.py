@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 Requests = Literal["assigned", "assigned-and-completable", "assigned-and-queued"]
-"""Orders whose requests count: assigned ones; also queued ones that the pod completes; or also all
-queued ones. A request is the need of an order for one unit."""
+"""Orders whose requests count. `assigned`: orders assigned to the station.
+`assigned-and-completable`: also queued orders that the pod completes. `assigned-and-queued`: also
+all queued orders. A request is the need of an order for one unit."""
 
 _REACH: dict[Requests, int] = {
     "assigned": 0,
@@ -38,12 +39,12 @@ class LateBinding(Parameters):
     late_bundles: bool = True
     """Whether new bundles are added to a pod that is already on its way to their station."""
     consider: Requests = "assigned-and-completable"
-    """Orders for which pods are brought: those `assigned` to the station; also those queued there
-    that the pod completes (`assigned-and-completable`); or also all those queued there
-    (`assigned-and-queued`)."""
+    """Orders for which pods are brought. `assigned`: orders assigned to the station.
+    `assigned-and-completable`: also orders queued there that the pod completes.
+    `assigned-and-queued`: also all orders queued there."""
     reserve: Requests = "assigned-and-completable"
-    """Orders whose units are bound to a pod when it is brought. The choices are those of
-    `consider`; no fewer orders may be chosen than there."""
+    """Orders whose units are bound to a pod when it is brought. The values are those of `consider`;
+    the orders must include those of `consider`."""
 
     @pydantic.model_validator(mode="after")
     def _reserve_what_is_considered(self) -> LateBinding:

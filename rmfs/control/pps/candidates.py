@@ -51,7 +51,7 @@ class Candidates:
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """Return, for each pod, how many of robot and station are on another tier, shape (C,).
+        """Return how many of the two, robot and station, are on another tier than each pod, (C,).
 
         If the warehouse has a single tier, the result is the number 0.
         """
@@ -156,7 +156,10 @@ class PickCandidates(Candidates):
         return units
 
     def queued_units(self) -> NDArray[np.int64]:
-        """Return how many open requests of queued orders each pod can serve in addition, (C,)."""
+        """Return how many open requests of queued orders each pod can serve, shape (C,).
+
+        Units that assigned orders need from the pod are not available to queued ones.
+        """
         if self.requests == "assigned-and-completable":
             done = self.completed()
             units = [float(order.open_units) for order in done.orders]

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Scores = NDArray[np.float64] | NDArray[np.int64]
 
 _OTHER_TIER = 1000.0
-"""Deduction from a score for each of robot and station that is on another tier than the pod.
+"""Deduction from a pod's score if the robot is on another tier, and again if the station is.
 
 It is larger than the number of units that any pod can serve.
 """
@@ -48,8 +48,8 @@ class RandomCriterion(PodCriterion):
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Return scores drawn uniformly from [0, 1).
 
-        If `prefer_same_tier` is set, the score of a pod is reduced by 1 for each of robot and
-        station that is on another tier.
+        If `prefer_same_tier` is set, the score of a pod is reduced by 1 if the robot is on another
+        tier, and by 1 if the station is.
         """
         scores: Scores = rng.random(len(candidates))
         return scores - candidates.other_tiers() if self.prefer_same_tier else scores
@@ -166,8 +166,8 @@ class PickWorkAmount(PodCriterion):
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
         """Return the value of the requests that the pod can serve, minus the cost of travel time.
 
-        If `prefer_same_tier` is set, the score of a pod is reduced for each of robot and station
-        that is on another tier.
+        If `prefer_same_tier` is set, the score of a pod is reduced if the robot is on another tier,
+        and again if the station is.
         """
         scores = self._work(candidates)
         if self.time_cost:
@@ -240,8 +240,8 @@ class BundleWorkAmount(PodCriterion):
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Return the number of bundles waiting for the pod, or their total waiting time in s.
 
-        If `prefer_same_tier` is set, the score of a pod is reduced for each of robot and station
-        that is on another tier.
+        If `prefer_same_tier` is set, the score of a pod is reduced if the robot is on another tier,
+        and again if the station is.
         """
         view = candidates.view
         station = candidates.station.number

@@ -34,8 +34,8 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
 
     A pod that deserves it is stored in this cache; if the cache is full, outside all caches; and if
     there is no room either, in another cache. Any other pod is stored outside all caches or, if
-    there is no room, in any cache. Among the empty storage locations of the zone, the one nearest
-    to the station is chosen; ties go to the lowest waypoint.
+    there is no room, in any cache. Among the empty storage locations there, the one nearest to the
+    station is chosen; ties go to the lowest waypoint.
     """
 
     parameters_model = CachePlaceParameters

@@ -62,7 +62,7 @@ class Caching:
         return self._scores.scores(given.utility_weight, given.speed_weight)
 
     def is_worth(self, pod: int, station: int, scores: NDArray[np.float64]) -> bool:
-        """Return whether a pod deserves a place in a station's cache; false without a cache.
+        """Return whether a pod deserves a place in a station's cache; false if there is no cache.
 
         Parameters
         ----------

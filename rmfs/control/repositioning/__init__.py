@@ -123,7 +123,7 @@ class Pausing(Repositioning[Q]):
         return False
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s at which a pause ends that prevented a search, or inf."""
+        """Return the simulated time in s when a pause that prevented a search ends, or inf."""
         if self._again_s <= self.view.now_s:
             self._again_s = inf
         return self._again_s

@@ -31,7 +31,7 @@ class CacheDropOffParameters(CacheParameters, Pauses):
 
 
 class CacheDropOff(Pausing[CacheDropOffParameters]):
-    """Clears drop-off zones into caches and storage, then fills or thins out the caches.
+    """Clears drop-off zones, then fills or thins out the caches.
 
     Stations are considered in order of the absolute difference between the number of occupied
     storage locations in their cache and its target, the largest first. If a drop-off zone holds

@@ -127,10 +127,11 @@ class BufferParameters(Parameters):
     """Parameters of RPS rules with a buffer."""
 
     buffer_threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """Share of a pod's capacity, used or promised, at which its bundles are released."""
+    """The bundles promised to a pod are released to ROA when this share of its capacity is used or
+    promised."""
     buffer_timeout_s: Annotated[float, pydantic.Field(ge=0)] = 1200.0
-    """Time in seconds after the last promise to a pod at which its bundles are released at the
-    latest."""
+    """The bundles promised to a pod are released at the latest this many seconds after the last
+    promise to it."""
 
 
 class StickyParameters(BufferParameters):

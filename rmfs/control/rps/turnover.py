@@ -26,11 +26,11 @@ class TurnoverPodParameters(TurnoverParameters):
     """Whether the pod of a class with the lowest share of its capacity used or promised is chosen;
     otherwise, a pod is drawn."""
     buffer_thresholds: tuple[Share, ...] = (0.8, 0.8, 0.8)
-    """For each class, the share of a pod's capacity, used or promised, at which its bundles are
-    released."""
+    """For each class: the bundles promised to a pod are released to ROA when this share of its
+    capacity is used or promised."""
     buffer_timeouts_s: tuple[Seconds, ...] = (1200.0, 1200.0, 1200.0)
-    """For each class, the time in seconds after the last promise to a pod at which its bundles are
-    released at the latest."""
+    """For each class: the bundles promised to a pod are released at the latest this many seconds
+    after the last promise to it."""
 
     @pydantic.model_validator(mode="after")
     def _one_per_class(self) -> TurnoverPodParameters:
@@ -46,10 +46,10 @@ class Turnover(Buffered[TurnoverPodParameters]):
 
     Classes are formed by units ordered (`rmfs.control.trackers.turnover`); the fastest pods belong
     to the class of the storage locations nearest to pick stations. If no pod of the class has room,
-    the next slower class is tried, then the next faster one, the second slower one, and so on.
-    Within a class, the last pod is chosen again until it has no room or a replenishment station
-    serves it. Then the emptiest pod is chosen (ties go to the lowest number), or a random pod. All
-    pods are candidates, wherever they are.
+    the next slower class is tried, then the next faster one, then the class after the next slower
+    one, and so on. Within a class, the last pod is chosen again until it has no room or a
+    replenishment station serves it. Then the emptiest pod is chosen (ties go to the lowest number),
+    or a random pod. All pods are candidates, wherever they are.
     """
 
     parameters_model = TurnoverPodParameters

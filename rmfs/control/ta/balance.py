@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def split(robots: int, first: float, second: float) -> tuple[int, int]:
-    """Divide robots between two groups in proportion to weights; return the number of each group.
+    """Divide robots between two groups in proportion to weights; return the number in each group.
 
     Numbers are rounded down. A robot left over goes to the group with fewer robots or, in a tie, to
     the first group, but never to a group of weight 0. If both weights are 0, no robot is assigned.

@@ -48,8 +48,8 @@ class Balanced(StationTeams[BalancedParameters]):
     A robot continues with the pod it carries as long as the pod has work at the robot's station
     (or, with `other_stations`, at another station nearby), and then parks the pod. A robot without
     a pod brings the pod that PPS chooses. If another robot without work stands beneath that pod,
-    this robot brings it, and the two robots exchange their stations. A robot for which there is no
-    work moves an idle pod, if repositioning finds one, or rests.
+    the other robot brings it, and the two robots exchange their stations. A robot for which there
+    is no work moves an idle pod, if repositioning finds one, or rests.
 
     Every `period_s`, if the set of stations with work has changed, the robots are redistributed.
     The share of robots given by the weight of repositioning, rounded down, gets no station. The

@@ -27,8 +27,8 @@ class BruteForceParameters(SoloParameters):
     """Parameters of TA brute-force."""
 
     queue_cost_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
-    """Expected wait at a station, in seconds, divided by the square of the number of robots at the
-    station or on their way there."""
+    """Factor of the expected wait at a station: the wait in seconds is this factor times the square
+    of the number of robots at the station or on their way there."""
 
 
 class _Job(NamedTuple):
@@ -51,10 +51,10 @@ class BruteForce(Solo[BruteForceParameters]):
     for bundles until there are none, and so on.
 
     If the best pod is not the carried one, the carried pod is parked at the storage location with
-    the least time to drive there plus the straight trip on to the other pod. Fetching the other pod
-    is a prepared task; if another robot has taken that pod by then, the robot searches again.
+    the least time to drive there plus the straight trip on to the other pod. The robot then fetches
+    the other pod; if another robot has taken it meanwhile, the robot searches again.
     Without work, pods are parked at the nearest empty location. The rule chooses pods and storage
-    locations itself, so PPS and PSA must be dummies; bundles go into the pods chosen by RPS.
+    locations itself, so PPS and PSA must be `dummy`; bundles go into the pods chosen by RPS.
     """
 
     parameters_model = BruteForceParameters

@@ -39,8 +39,8 @@ class Linear(Solo[LinearParameters]):
     The task with the greatest weighted sum of features is chosen. PPS, PSA and repositioning choose
     pods and storage locations; if they find none, the next best task is chosen. If another robot
     without work stands beneath the pod, that robot gets the task. A robot at rest gets work for a
-    station only if its sum is at least the weight of `rest`. Ties go to work for the station with
-    the lowest number, then to storing, moving, and resting.
+    station only if the sum for this work is at least the weight of `rest`. Ties go to work for the
+    station with the lowest number, then to storing, moving, and resting.
     """
 
     parameters_model = LinearParameters

@@ -44,8 +44,8 @@ class StationTeams(TaskAllocation[P]):
 
     A robot continues with the pod it carries as long as the pod can serve the robot's station, and
     then parks the pod. A robot without a pod brings the pod that PPS chooses. If another robot
-    without work stands beneath that pod, this robot brings it, and the two robots exchange their
-    stations. A robot without work rests, and gets work as soon as there is any.
+    without work stands beneath that pod, the other robot brings it, and the two robots exchange
+    their stations. A robot without work rests, and gets work as soon as there is any.
 
     Every `period_s`, if the result of `stations_now` has changed, robots are reassigned to stations
     below their goal (`goals`), the nearest pair of robot and station first. If no station should

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 Demand = Literal["assigned", "unbound", "wanted"]
-"""Which units are demand: units that orders at stations need and that are not bound to a pod
-(`assigned`); also those of orders in the backlog (`unbound`); or all units not yet picked
-(`wanted`)."""
+"""Which units are demand. `assigned`: units that orders at stations need and that are not bound to
+a pod. `unbound`: also such units of orders in the backlog. `wanted`: all units that are ordered and
+not yet picked."""
 
 _STEPS = 1 << 20  # popularity is counted in integers, so that sums never drift
 

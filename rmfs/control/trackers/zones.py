@@ -26,7 +26,8 @@ class ZoneParameters(Parameters):
     cache_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.25
     """Share of all storage locations used for caches, divided equally among the pick stations."""
     drop_off_places: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Number of storage locations in the drop-off zone of each pick station."""
+    """Number of storage locations in the drop-off zone of each pick station: those that a robot
+    with a pod reaches fastest from the station."""
     zone_priority: ZonePriority = "drop-off"
     """Which kind of zone chooses its storage locations first: `drop-off`, `cache`, or neither
     (`equal`)."""
@@ -74,7 +75,7 @@ class Zones(Tracker):
         self._cache_mask: NDArray[np.bool_] = self.cache_of >= 0
 
     def occupied(self) -> NDArray[np.int64]:
-        """Return, for each cache, how many places hold a pod or are kept by a robot, shape (S,)."""
+        """Return, for each cache, how many places hold a pod or are claimed by a robot, (S,)."""
         taken = self._cache_mask & ~self.view.storage.is_empty
         return np.bincount(self.cache_of[taken], minlength=len(self.cache_size))
 

@@ -69,7 +69,7 @@ class UnkindWire:
         self._tcp.close()
 
     def pump(self) -> None:
-        """Write the frames that are due to the connection."""
+        """Write to the connection the frames that are due."""
         while self._out and self._out[0][0] <= self.now_us and not self.is_closed:
             frame = self._out.popleft()[1]
             self._tcp.write(frame)

@@ -32,8 +32,8 @@ def guarded(
     stop
         Function that stops the robot, called when the program has ended.
     patience_s
-        Time in s after which the program is killed if it makes no further step. It counts from the
-        first step.
+        Time in s after which the program is killed if it makes no further step; counting begins
+        with the first step.
 
     Returns
     -------

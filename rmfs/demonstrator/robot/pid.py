@@ -12,7 +12,8 @@ class Pid:
     Attributes
     ----------
     proportional, integral, derivative
-        Weights of the error (no unit), of its integral over time (1/s) and of its derivative (s).
+        Weights of the error, of its integral over time and of its derivative, in units of the
+        output per unit of the error, and additionally 1/s and s for the latter two.
     limit
         Limit of the absolute output; while it is exceeded, the integral is not updated.
     """
@@ -35,5 +36,5 @@ class Pid:
         return max(-self.limit, min(self.limit, wanted))
 
     def reset(self) -> None:
-        """Reset the integral and the last error, as at the beginning of a new line."""
+        """Reset the integral and the last error, as at the beginning of a straight run."""
         self._sum, self._last = 0.0, None

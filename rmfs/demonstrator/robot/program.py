@@ -44,11 +44,11 @@ class Settings:
     blind_m
         Maximum distance that the robot drives without seeing a line.
     search_m, searches
-        Distance around its expected position within which a missed tag is searched for, and maximum
-        number of searches.
+        Length of the stretch in which a missed tag is searched for, which ends `overshoot_m` past
+        the expected position, and maximum number of searches.
     steering
-        Weights and limit of the PID controller (`Pid`) from the offset in m to the angular speed in
-        rad/s.
+        Weights and limit of the PID controller (`Pid`), which turns the offset in m into an angular
+        speed in rad/s.
     """
 
     speed_m_s: float = 0.21

@@ -2,7 +2,7 @@
 
 One clock governs plans, heartbeats and timeouts. An emulated room keeps the clock and synchronises
 with the server: it sends the time, and the number of bytes that each robot has sent. When the
-server has processed this time, it answers with the number of bytes that it has sent to each robot.
+server has processed all this, it answers with the number of bytes that it has sent to each robot.
 
     room -> server   tick: time_us, sent (bytes by robot)
     server -> room   tock: time_us, sent (bytes by robot)
@@ -21,7 +21,7 @@ ROOM = "room"
 """Name with which an emulated room identifies itself."""
 
 PATIENCE_S = 60.0
-"""Wall time, in s, without a message after which an emulated room counts as gone."""
+"""Wall time, in s, after which an emulated room that sends no message counts as gone."""
 
 
 class RoomGoneError(RuntimeError):

@@ -28,14 +28,14 @@ _log = logging.getLogger("rmfs.demonstrator")
 TICK_US = 50_000
 """Time between two ticks, in microseconds."""
 GIVE_UP_US = 30_000_000
-"""Time of silence, in microseconds, after which other robots are planned around a robot."""
+"""Time, in microseconds, that a robot may be silent before the others are planned around it."""
 MOST_TROUBLES = 2
 """Number of failed attempts at an order after which other robots are planned around the robot."""
 GONE_US = 3_600_000_000
 """Time, in microseconds, by which a robot's plan is postponed if others are planned around it."""
 SETTLE_US = 4_000_000
-"""Time, in microseconds, that a robot gets to stop at the last waypoint granted when plans are
-made anew."""
+"""Time, in microseconds, allowed for a robot to stop at the last waypoint granted to it when plans
+are made anew."""
 
 COUNTED = (
     *("orders", "delays", "regroupings", "strayed"),
@@ -110,7 +110,7 @@ class Guide:
         return outbox
 
     def forget_strayed(self) -> None:
-        """Forget where robots have strayed; they report it again when they receive their orders."""
+        """Forget which robots are off their paths; they report it again on getting an order."""
         for robot in self.robots.values():
             robot.astray = None
 

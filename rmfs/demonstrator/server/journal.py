@@ -60,7 +60,7 @@ class Journal:
             self._write({"time_us": left_out, "left_out": True})
 
     def heard_at(self, time_us: int) -> Heard:
-        """Return the messages and the silent robots of a past tick; nothing if it is omitted."""
+        """Return the messages and silent robots of a past tick; nothing if the tick is omitted."""
         if time_us in self.left_out:
             return [], frozenset()
         return self._by_time.get(time_us, ([], frozenset()))

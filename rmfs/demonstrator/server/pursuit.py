@@ -1,4 +1,4 @@
-"""The order by which a robot follows a piece of its plan, and its confirmed progress."""
+"""The order by which a robot follows a part of its plan, and its confirmed progress."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Pursuit:
     number
         Number of the order.
     move
-        The piece of the plan that the order carries out. Its times change if the robot is late.
+        The part of the plan that the order carries out. Its times change if the robot is late.
     heading_before_rad
         Heading of the robot, in rad, before the turn.
     waypoints
@@ -73,7 +73,7 @@ class Pursuit:
         Parameters
         ----------
         move
-            The piece of the plan with its present times.
+            The part of the plan with its present times.
         """
         if self.passed == len(self.waypoints):
             return move.end_us
@@ -94,7 +94,7 @@ class Pursuit:
         del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
 
     def follow(self, move: PlannedMove, layout: Layout, robot: int) -> None:
-        """Replace the move by one that ends earlier on the same run, with its own times."""
+        """Replace the move by one that ends earlier on the same run and has its own times."""
         self.move = move
         self.waypoints, self.along_m, self.seconds = _course(layout, move, robot)
 

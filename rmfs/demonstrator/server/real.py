@@ -53,9 +53,9 @@ class RealRobot:
     def heading_at(self, layout: Layout, waypoint: int) -> float:
         """Return the robot's probable heading, in rad, at a waypoint to which it was not sent.
 
-        If this waypoint and the last confirmed one lie on a line along x or y, it is the direction
-        from the latter to the former, as after a wrong turn. Otherwise, it is the heading that the
-        robot has according to its order, as after a push.
+        If this waypoint and the last confirmed one lie on a line along x or y, the heading is the
+        direction from the last confirmed waypoint to this one, as after a wrong turn. Otherwise, it
+        is the heading that the robot has according to its order, as after a push.
         """
         pursuit = self.pursuit
         if pursuit is None:

@@ -31,7 +31,7 @@ TO_IT, FROM_IT = "no path leads to it", "no path leads away from it"
 
 
 def connection(layout: Layout) -> Iterator[Violation]:
-    """Yield violations: endpoints not reached or left, with or without load, and stuck robots."""
+    """Yield violations: places of tasks that cannot be reached or left, and stuck robots."""
     lost = np.zeros(layout.waypoints, dtype=np.bool_)
     yield from _empty(layout, lost)
     yield from _loaded(layout, lost)

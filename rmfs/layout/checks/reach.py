@@ -41,14 +41,19 @@ class Reach:
         return _search(self._back, goals & self.allowed)
 
     def components(self) -> NDArray[np.int32]:
-        """Return the number of the strongly connected component of each waypoint, shape (N,)."""
+        """Return the index of the strongly connected component of each waypoint, shape (N,)."""
         labels: NDArray[np.int32] = connected_components(
             self._graph, directed=True, connection="strong"
         )[1]
         return labels
 
     def largest(self, counted: Mask) -> Mask:
-        """Return the strongly connected component with most waypoints of `counted`, shape (N,)."""
+        """Return the strongly connected component that has the most waypoints of `counted`.
+
+        Returns
+        -------
+        Which waypoints belong to it, shape (N,); none if no waypoint of `counted` is allowed.
+        """
         labels = self.components()
         counted = counted & self.allowed
         if not counted.any():

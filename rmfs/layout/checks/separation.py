@@ -1,8 +1,9 @@
 """Checks that bodies stay apart if robots reserve the waypoints of the edges they use.
 
-A robot on an edge reserves both its ends. Reservations therefore keep two robots apart if edges
-without a common end, and waypoints beside an edge, are at least the sum of the radii apart
-(docs/safety.md). Pods are discs and count everywhere, since they are carried everywhere.
+A robot on an edge reserves both its ends. Reservations therefore keep two robots apart if the
+distance between edges without a common end, and between an edge and any other waypoint, is at least
+the sum of the radii (docs/safety.md). Pods are discs, and their radius counts everywhere, since
+they are carried everywhere.
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ LONG = 3.0
 """Edges longer than this multiple of the median length are compared with all others one by one."""
 
 GRID_TOLERANCE = 1e-6
-"""Share of the grid width by which this width must exceed the required distance. Positions may be
-off the grid by an eighth of this share."""
+"""Share of the width of a regular grid by which this width must exceed the required distance.
+Positions may be off the grid by an eighth of this share of the width."""
 
 
 def separation(layout: Layout) -> Iterator[Violation]:

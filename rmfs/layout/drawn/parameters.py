@@ -42,8 +42,8 @@ class Equipment(Strict):
 
     pod_share: Annotated[float, Field(ge=0, le=1)] = Field(
         0.85,
-        description="pods per storage location (rounded down); in a picture, only those drawn "
-        "as `x` count",
+        description="pods per storage location (rounded down); in a picture, only storage "
+        "locations drawn as `x` count",
     )
     pod_radius_m: Radius = _as_generated("pod_radius_m")
     pod_capacity: Positive = _as_generated("pod_capacity")

@@ -18,7 +18,7 @@ NUMBERS = "123456789"
 class ForkError(ValueError):
     """Several cells could be the next place of a queue.
 
-    The error stores the cell of the last known place, and the rank of the next one.
+    The error stores the cell of the last known place, and the number of the next place.
     """
 
     def __init__(self, cell: Cell, rank: int) -> None:
@@ -29,7 +29,8 @@ class ForkError(ValueError):
 def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tuple[Cell, ...]:
     """Follow a queue from the station to its entrance.
 
-    The next place is the neighbour with the next number, or else the only neighbour with a q.
+    The next place is the neighbour with the next number, or else the only neighbour with the sign
+    `q`.
 
     Parameters
     ----------

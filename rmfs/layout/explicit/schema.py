@@ -71,7 +71,7 @@ class ExplicitReplenishmentStation(Strict):
 
 
 class ExplicitOtherStation(Strict):
-    """A station of another kind; `queue` as for pick stations."""
+    """A station neither for picking nor replenishment; `queue` as for pick stations."""
 
     queue: list[Index] = Field(
         min_length=1, description="waypoints from the station to the entrance of its queue"
@@ -80,7 +80,7 @@ class ExplicitOtherStation(Strict):
 
 
 class ExplicitOtherStations(Strict):
-    """All stations of another kind: the class, its parameters, and their positions."""
+    """All stations of a further kind: its class and parameters, and where they stand."""
 
     kind: str = Field(
         description="class: module:Class, path/to/file.py:Class, or a registered name"

@@ -1,4 +1,4 @@
-"""The buffer of a station or elevator: a comb of parallel segments walked as a serpentine.
+"""The buffer of a station or elevator: parallel segments that form a serpentine.
 
 RAWSim-O default layout: `entry_exit_distance + 1` segments of `buffer_width` tiles, perpendicular
 to the edge of the hall. The first segment begins at the entrance, the last one ends at the exit,

@@ -1,8 +1,8 @@
 """Stations within the storage area: pockets beside an aisle, each in place of a storage location.
 
-They are spread evenly over the blocks, and the stations of each kind among the others. Robots enter
-a pocket from the aisle beside it and leave it to the same aisle. It leads nowhere else, so that no
-robot drives through it.
+The pockets are spread evenly over the blocks, and those of each kind of station evenly over the
+pockets. Robots enter a pocket from the aisle beside it and leave it to the same aisle. A pocket
+leads nowhere else, so that no robot drives through it.
 """
 
 from __future__ import annotations

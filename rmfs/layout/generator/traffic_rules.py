@@ -3,8 +3,8 @@
 As in RAWSim-O's default layout, one-way traffic follows the same rule in aisles, ring road and
 halls. Rows and columns are counted from the north-west corner of the ring road. Even rows run east
 and odd rows west; even columns run north and odd columns south. All four directions are reversed
-for a clockwise ring. Only the lines along a hall are counted from its outer edge; the outermost
-line runs in the direction of the ring road.
+for a clockwise ring. Only the rows or columns along a hall are counted from its outer edge; the
+outermost one runs in the direction of the ring road.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from rmfs.layout.parameters import LayoutParameters
 
 LOOP_LINES = 2
-"""Number of lines along a hall of pattern "tim", beside the buffers, one in each direction."""
+"""Number of lanes beside the buffers along a hall with the pattern "tim": one per direction."""
 
 
 class TrafficRules:

@@ -40,7 +40,7 @@ class Audit:
     motion
         Result of the trace checker.
     chapters
-        The other parts.
+        The parts of the audit other than motion.
     """
 
     motion: CheckReport

@@ -18,7 +18,7 @@ KINDS = (
 
 
 def check(layout: Layout, rows: Rows) -> Chapter:
-    """Check that orders never outnumber a pick station's slots, and are picked only in a slot.
+    """Check that a pick station never has more open orders than slots, and picks only for these.
 
     Also checks that no order is assigned to a station that is switched off.
     """

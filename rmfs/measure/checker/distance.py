@@ -115,7 +115,7 @@ def _halved(b: Floats) -> tuple[Floats, Floats]:
 def minimum(power: Floats) -> tuple[Floats, Floats]:
     """Return where on [0, 1] each polynomial is smallest, and its value there.
 
-    Uses the same bounds: halves that cannot contain a smaller value are dropped.
+    Uses the same bounds as `below`: halves that cannot contain a smaller value are dropped.
 
     Returns
     -------
@@ -147,6 +147,8 @@ def minimum(power: Floats) -> tuple[Floats, Floats]:
 def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floats]:
     """Find pairs of pieces that come closer than a limit or, for guided robots, may do so.
 
+    Of a guided robot, only the way is known (see `Pieces`).
+
     Parameters
     ----------
     limit
@@ -170,7 +172,7 @@ def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floa
 
 
 def squared_between_ways(one: Pieces, other: Pieces) -> Floats:
-    """Return the least squared distance of the lines that pairs of pieces cover, in m², shape (K,).
+    """Return the least squared distance of the two lines of each pair of pieces, in m², shape (K,).
 
     A piece covers a straight line during the common time of the pair; if the robot may be anywhere
     on its way, the line is the whole way.

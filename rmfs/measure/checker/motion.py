@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEGLIGIBLE_S = 2e-6
-"""Rests at the end of a run shorter than this, in s, are due to rounding and get no piece."""
+"""Duration, in s, below which a rest at the end of a run is due to rounding and gets no piece."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +72,8 @@ def lengths(layout: Layout, trace: Trace) -> Floats:
 class Pieces:
     """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
 
-    The trace of a guided robot states only its way, not where on the way it is at which time. Its
-    piece has constant speed and covers the whole way.
+    Of a guided robot (a real one in a demonstration), the trace states only the way, not where on
+    the way it is at which time. Its piece has constant speed and covers the whole way.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Pieces:
     x_m, y_m, vx, vy, hx, hy
         Position and velocity at `t0_s`, and half the acceleration.
     guided
-        Whether the robot may be anywhere on the piece's way all the time.
+        Whether the robot may be anywhere on the piece's way at any time of the piece.
     """
 
     row: NDArray[np.int64]

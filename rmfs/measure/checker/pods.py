@@ -1,4 +1,4 @@
-"""Checks that pods are conserved, never share a place, and never collide with carried pods."""
+"""Checks that pods are conserved and share no place, and that no carried pod hits a stored one."""
 
 from __future__ import annotations
 

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 SOURCES = {
     "optimiser": "by solutions of optimisers",
-    "heuristic": "by the own rule of controllers that ask optimisers",
-    "stale": "of solutions that no longer held",
-    "failed": "by the own rule because an optimiser failed or found nothing",
+    "heuristic": "taken by controllers' own rules although they ask optimisers",
+    "stale": "of solutions that were no longer valid",
+    "failed": "taken by controllers' own rules because an optimiser failed or found nothing",
 }
 """Sources of decisions in runs with optimisers, each with its description."""
 

@@ -26,8 +26,9 @@ class Delays(Measure):
             f"{part}_share",
             REAL,
             "share",
-            f"Share of the turnover of all completed orders: {what}. A line is timed by its "
-            "last unit, and an order by the mean over its lines; empty if no order was completed",
+            f"Share of the turnover of all completed orders: {what}. The times of a "
+            "line are those of its last unit, those of an order the means over its lines; empty if "
+            "no order was completed",
             better=LESS if part in _LESS else NEITHER,
         )
         for part, what in PARTS.items()

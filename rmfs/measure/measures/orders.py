@@ -51,7 +51,7 @@ class OrderTimes(Measure):
             "late_share",
             REAL,
             "share",
-            "Completed orders that were completed after their due time",
+            "Share of the completed orders that were completed after their due time",
             better=LESS,
         ),
         Column(

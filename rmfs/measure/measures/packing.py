@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Packing(Measure):
-    """The put wall, blocking, packers, and the time to the packed parcel."""
+    """Put wall, blocked slots of stations, packers, and times until orders are packed."""
 
     columns = (
         Column(
@@ -72,7 +72,13 @@ class Packing(Measure):
             "carried by hand, use slots until the last one has arrived",
             better=LESS,
         ),
-        Column("wall_slots_max", REAL, "slots", "Most slots in use at a time", better=LESS),
+        Column(
+            "wall_slots_max",
+            REAL,
+            "slots",
+            "Maximum number of slots of the put wall in use at a time",
+            better=LESS,
+        ),
         Column(
             "totes_held_mean",
             REAL,
@@ -91,7 +97,7 @@ class Packing(Measure):
             "totes_by_hand",
             COUNT_OR_EMPTY,
             "totes",
-            "Totes carried by hand because their station had waited too long",
+            "Totes carried by hand because they had waited too long at their stations",
             better=LESS,
         ),
         Column(
@@ -145,7 +151,7 @@ class Packing(Measure):
 
 
 def slots_in_use(totes: pd.DataFrame, *, per_part: bool) -> Steps:
-    """Return the number of used slots of the wall over time.
+    """Return the number of slots of the put wall in use, over time.
 
     Parameters
     ----------

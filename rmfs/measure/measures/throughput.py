@@ -83,7 +83,7 @@ class Potential(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the upper bound, the picked units as a share of it, and the rate at this pile-on.
+        """Return the upper bound, the picked units as a share of it, and `units_per_h_at_pile_on`.
 
         All are nan if there is no positive minimum of the pickers' handling times. A warning is
         issued if the bound is exceeded.

@@ -31,7 +31,7 @@ BINS = 24
 
 
 def delays(orders: pd.DataFrame, ax: Axes) -> None:
-    """Plot the mean parts of order turnover by completion time, stacked.
+    """Plot the mean of each part of order turnover, stacked, over the time of completion.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ def per_hour(series: pd.DataFrame, column: str, bin_s: float) -> tuple[Floats, F
     Parameters
     ----------
     bin_s
-        Minimum length of a bin in s; less if the run is too short for three bins.
+        Minimum length of a bin in s, unless the run is too short for three such bins.
 
     Returns
     -------

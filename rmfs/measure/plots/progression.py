@@ -23,7 +23,7 @@ def progression(
     series
         The table `series` of a run.
     bin_s
-        Minimum length of the time bins in s; less if the run is too short for three bins.
+        Minimum length of the time bins in s, unless the run is too short for three such bins.
     bound_per_h
         Upper bound on units per hour, drawn as a dotted line. Default: none.
     """

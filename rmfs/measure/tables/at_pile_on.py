@@ -16,11 +16,12 @@ if TYPE_CHECKING:
 def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) -> float:
     """Return the rate at which a station picks with a given pile-on if it never waits.
 
-    Of the p units of a visit, all but the last occupy robot and station for max(T, K), where T is
-    `unit_transfer_s` and K is `unit_pick_s`. After the last, the robot leaves when K is over. The
-    next robot arrives at least a time c later (`change_s`), and picks when T is over, too. A
-    visit therefore lasts at least (p - 1) max(T, K) + max(T, K + c). This is linear in p, so the
-    mean pile-on gives a bound on the mean.
+    Each of the p units of a visit except the last occupies robot and station for max(T, K), where T
+    is `unit_transfer_s` and K is `unit_pick_s`. The last one occupies the robot for K; then the
+    robot leaves. The next robot arrives at least a time c later (`change_s`); its first pick starts
+    only when the station's time T for the last unit is over, too. A visit therefore lasts at least
+    (p - 1) max(T, K) + max(T, K + c). This is linear in p, so the mean pile-on gives a bound on the
+    mean.
 
     Parameters
     ----------
@@ -43,9 +44,9 @@ def change_s(layout: Layout, waypoint: int) -> float:
     """Return the minimum time between one robot's departure and the next one's arrival, in s.
 
     The robot turns from the edge it arrived on to one that leads away, and clears the waypoint when
-    it reaches the next one; only then may another enter the last edge before the waypoint. The
-    time is the minimum over edges and kinds of robots; robots need not stop at the outer ends of
-    these two edges.
+    it reaches the next one. Only then may another robot enter the last edge before the waypoint.
+    The result is the minimum over edges and kinds of robots; robots need not stop at the outer ends
+    of these two edges.
     """
     inward, outward = list(_edges_in(layout, waypoint)), list(_edges_out(layout, waypoint))
     if not inward or not outward:

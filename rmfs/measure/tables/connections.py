@@ -50,7 +50,7 @@ EDGES = (
 
 
 def connections(logs: Logs) -> pd.DataFrame:
-    """Make a row per start and end of trips that ended in the measured time."""
+    """Make a row per pair of start and end, for the trips that ended in the measured time."""
     told = logs.recorder.trips
     number = logs.layout.waypoints
     pair = told["from_wp"].astype(np.int64) * number + told["to_wp"]

@@ -31,7 +31,7 @@ _OF_ANSWERS: dict[str, Callable[[Answer], Any]] = {
     "built": lambda answer: answer.built,
     "scale": lambda answer: answer.scale,
 }
-"""Columns that describe answers in both tables of questions."""
+"""Columns that describe answers in the tables `decisions` and `answers`."""
 
 
 DECISIONS = (
@@ -73,7 +73,10 @@ DECISIONS = (
     ),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
     Column(
-        "built", REAL, "", "Entries of the solver's model that were built, not included in work"
+        "built",
+        REAL,
+        "",
+        "Number of entries of the solver's model that were built; building is not part of `work`",
     ),
     Column("build_s", REAL, "s", "Wall time of building the solver's model", measured=True),
     Column("solve_s", REAL, "s", "Wall time of the solver without building", measured=True),
@@ -105,9 +108,12 @@ ANSWERS = (
     Column("bound", REAL, "", "Proven bound on the best value"),
     Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
     Column(
-        "built", REAL, "", "Entries of the solver's model that were built, not included in work"
+        "built",
+        REAL,
+        "",
+        "Number of entries of the solver's model that were built; building is not part of `work`",
     ),
-    Column("scale", REAL, "", "Divisor of the relative gap; empty: abs(objective)"),
+    Column("scale", REAL, "", "Divisor of the relative gap; if empty, it is abs(objective)"),
     Column("wall_s", REAL, "s", "Wall time of solver and building", measured=True),
     Column("build_s", REAL, "s", "Wall time of building", measured=True),
     Column("solution", TEXT, "", "The solution as JSON; empty without one"),
@@ -121,7 +127,7 @@ CONTROLLERS = (
     Column("wall_mean_s", REAL, "s", "Mean wall time of a call", measured=True),
     Column("optimiser_calls", INTEGER, "calls", "Questions to optimisers"),
     Column(
-        "optimiser_decisions", INTEGER, "decisions", "Decisions made by solutions of optimisers"
+        "optimiser_decisions", INTEGER, "decisions", "Decisions based on solutions of optimisers"
     ),
     Column(
         "heuristic_decisions",

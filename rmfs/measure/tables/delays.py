@@ -3,9 +3,9 @@
 For each line, several moments lie between the arrival and the completion of its order: the order is
 assigned to a station; a robot gets the task to bring the pod of the line's last unit; it lifts the
 pod; it enters the queue zone; it reaches the station; the unit has been handled; the order is
-complete. The time between each pair of moments has a name, and together they add up to the turnover
-of the order. If the pod was already under way when the order was assigned, the steps before the
-assignment do not count.
+complete. The times between successive moments, some of them divided further, have names and add up
+to the turnover of the order. If the pod was already under way when the order was assigned, the
+steps before the assignment do not count.
 """
 
 from __future__ import annotations
@@ -32,10 +32,12 @@ PARTS = {
     "wait_assignment": "waiting for POA to assign the order to a station",
     "wait_pod": "waiting for a pod to be chosen while some robot was at rest",
     "wait_robot": "waiting for a pod to be chosen while all robots had work",
-    "wait_plan": "waiting for the planner before these drives, if plans take time",
+    "wait_plan": "waiting for a plan before the drives to the pod and to the queue zone, if "
+    "plans take time",
     "drive_free": "driving to the pod and with it to the queue zone, lifting included, in the "
     "time that this takes without other robots",
-    "drive_hindered": "additional time of these drives because of other robots",
+    "drive_hindered": "additional time of the drives to the pod and to the queue zone because of "
+    "other robots",
     "queue": "waiting in the queue zone",
     "service": "service at the station, until the last unit of the line was handled",
     "wait_order": "waiting at the slot for the other lines of the order",

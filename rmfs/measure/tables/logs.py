@@ -62,7 +62,7 @@ class Logs:
 
     @cached_property
     def orders(self) -> pd.DataFrame:
-        """All orders that arrived, by ordinal."""
+        """All orders that arrived, in order of arrival."""
         waiting = [order_row(order) for order in self.recorder.open_orders.values()]
         return framed(self.recorder.orders, waiting).sort_values("order", ignore_index=True)
 
@@ -132,7 +132,7 @@ class Logs:
     def visits(self) -> pd.DataFrame:
         """Visits of pods to stations, with the `units` and `bundles` handled in the measured time.
 
-        Each unit or bundle belongs to the last visit to its station that started before it.
+        Each unit or bundle belongs to the last visit to its station that had started by then.
         """
         frame = framed(self.recorder.visits)
         frame = frame.sort_values(["station", "begin_s"], ignore_index=True)

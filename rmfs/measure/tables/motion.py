@@ -60,13 +60,13 @@ PLANS = (
     Column("begun_us", INTEGER, "us", "When a planner began the search"),
     Column("labels", INTEGER, "labels", "Labels (partial routes) expanded in the search"),
     Column("took_us", INTEGER, "us", "Simulated time that the search took"),
-    Column("found", FLAG, "", "Whether it found a route"),
+    Column("found", FLAG, "", "Whether the search found a route"),
     Column("wall_s", REAL, "s", "Wall time of the search", measured=True),
 )
 
 _PURPOSES = {
-    "pick": "bound for a pick station (fetching its pod included), or at one",
-    "replenish": "bound for a replenishment station (fetching its pod included), or at one",
+    "pick": "on the way to a pick station (including the way to the pod), or at one",
+    "replenish": "on the way to a replenishment station (including the way to the pod), or at one",
     "store": "carrying or fetching a pod for another purpose",
     "rest": "without a pod or a task for one",
 }
@@ -119,7 +119,10 @@ def trips(logs: Logs) -> pd.DataFrame:
 
 
 def plans(logs: Logs) -> pd.DataFrame:
-    """Make a row per search for the plan of a trip, warm-up included; empty if it takes no time."""
+    """Make a row per search for the plan of a trip, warm-up included.
+
+    The table is empty if searches take no simulated time.
+    """
     told = logs.recorder.plans
     return tidy("plans", PLANS, {column.name: told[column.name] for column in PLANS})
 

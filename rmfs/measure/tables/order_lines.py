@@ -58,7 +58,7 @@ def order_lines(logs: Logs) -> pd.DataFrame:
 
 
 def with_columns_of(file: OrderFile, line: NDArray[np.int64], frame: pd.DataFrame) -> pd.DataFrame:
-    """Add the user's own columns of a file to a table of some of its lines."""
+    """Add the user's own columns of a file to a table whose rows are lines of this file."""
     import pandas as pd
 
     for name, (codes, texts) in file.columns.items():

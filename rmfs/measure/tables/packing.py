@@ -56,7 +56,7 @@ TOTES = (
         "by_hand",
         FLAG,
         "",
-        "Whether it was carried by hand because its station had waited too long",
+        "Whether the tote was carried by hand because it had waited too long at its station",
     ),
 )
 

@@ -75,4 +75,4 @@ def _of_type(column: Any, dtype: Any, rows: int) -> Any:
 
 
 _PLAIN = {np.dtype(np.float64): float, np.dtype(np.int64): int}
-"""Type of a single value that can be converted to each column type without checks."""
+"""For each column type, the type of single values that need no checks to be converted to it."""

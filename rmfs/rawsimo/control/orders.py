@@ -184,5 +184,5 @@ def _criterion(block: Settings, rule: Rule) -> Table:
 
 
 def roa(kind: str, block: Settings) -> Table:
-    """Return the ROA table for a replenishment batching."""
+    """Return our table `roa` that corresponds to a replenishment batching method of RAWSim-O."""
     return translated(block, ROA[kind])

@@ -43,7 +43,7 @@ _EXCHANGEABLE = {
 
 
 def sa(kind: str, block: Settings) -> Table:
-    """Return the SA table for a station activation."""
+    """Return our table `sa` that corresponds to a station activation method of RAWSim-O."""
     table = translated(block, SA[kind])
     if kind == "WorkShift":
         shifts = block.switches("Shifts") or _SHIFTS
@@ -52,12 +52,14 @@ def sa(kind: str, block: Settings) -> Table:
 
 
 def mm(kind: str, block: Settings) -> Table:
-    """Return the MM table for a method management, which in RAWSim-O exchanges only pod storage.
+    """Return our table `mm` that corresponds to a method management of RAWSim-O.
+
+    In RAWSim-O, method management exchanges PSA rules only.
 
     Raises
     ------
     InputError
-        If it names a pod storage that RAWSim-O itself cannot exchange.
+        If it names a pod storage rule that RAWSim-O itself cannot exchange.
     """
     if kind == "Random":
         exchanges = block.switch("ExchangePodStorage", default=True)

@@ -99,7 +99,7 @@ PP = (*_RULES, "Simple", "Dummy")
 
 
 def pp(kind: str, block: Settings) -> Table:
-    """Return the PP table for a path planning.
+    """Return our table `pp` that corresponds to a path planning method of RAWSim-O.
 
     With methods that rmfs also has, a robot is granted one straight run at a time, as in RAWSim-O.
     """

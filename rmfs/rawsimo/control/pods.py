@@ -78,7 +78,7 @@ ZONES: dict[str, Element] = {
     "DropoffCount": Whole("drop_off_places", 0),
     "ZonePriority": Word("zone_priority", _PRIORITIES, "DropoffFirst"),
 }
-"""The zones, which have their own block in the file."""
+"""Parameters of the zones, which have a block of their own in the file."""
 
 _DEAD = {
     "ScoreUpdateTimeout": "RAWSim-O itself never uses it",
@@ -157,12 +157,12 @@ REPOSITIONING = {
 
 
 def rps(kind: str, block: Settings) -> Table:
-    """Return the RPS table for an item storage."""
+    """Return our table `rps` that corresponds to an item storage method of RAWSim-O."""
     return translated(block, RPS[kind])
 
 
 def psa(kind: str, block: Settings) -> Table:
-    """Return the PSA table for a pod storage."""
+    """Return our table `psa` that corresponds to a pod storage method of RAWSim-O."""
     table = translated(block, PSA[kind]) | _zones(kind, block)
     if "within_class" in table:
         table["within_class"], _, metric = table["within_class"].partition(" ")
@@ -171,7 +171,7 @@ def psa(kind: str, block: Settings) -> Table:
 
 
 def repositioning(kind: str, block: Settings) -> Table:
-    """Return the repositioning table for a repositioning method of RAWSim-O."""
+    """Return our table `repositioning` that corresponds to a repositioning method of RAWSim-O."""
     return translated(block, REPOSITIONING[kind]) | _zones(kind, block)
 
 

@@ -168,7 +168,7 @@ _OLD_ORDERS = (
 
 
 def ta(kind: str, block: Settings) -> Table:
-    """Return the TA table for a task allocation, without its pod selection."""
+    """Return our table `ta` for a task allocation method of RAWSim-O, without its pod selection."""
     block.leave(_OLD_ORDERS, "RAWSim-O no longer supports it and uses its default pod selection")
     table = translated(block, TA[kind])
     if table.get("period_s") == 0:
@@ -178,10 +178,10 @@ def ta(kind: str, block: Settings) -> Table:
 
 
 def pps(kind: str, block: Settings) -> Table:
-    """Return the PPS table for the pod selection of a task allocation.
+    """Return our table `pps` for the pod selection of a task allocation method of RAWSim-O.
 
-    Task allocations that choose pods themselves (Random, BruteForce) get the rule `dummy`, without
-    late picks and bundles.
+    Task allocations that choose pods themselves (Random, BruteForce) get the rule `dummy`, with
+    `late_picks` and `late_bundles` false.
     """
     selection = block.block("PodSelectionConfig")
     if kind in ("Random", "BruteForce"):

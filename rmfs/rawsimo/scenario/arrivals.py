@@ -33,7 +33,7 @@ class Arrivals:
     mode
         `backlog`, `poisson` or `stream`.
     letters
-        Whether SKUs are letters and orders are words.
+        Whether SKUs are coloured letters, and orders are words spelled with them.
     file
         File of fixed orders.
     """

@@ -30,8 +30,8 @@ _COUNTS = {
 def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
     """Return the changes of the layout as pairs of path and value.
 
-    A switch is one element, and its value is another element whose name begins with that of the
-    switch.
+    Each change has a switch and a value: two elements, of which the name of the value begins with
+    that of the switch.
 
     Raises
     ------

@@ -19,7 +19,7 @@ _T = TypeVar("_T")
 class Settings:
     """One block of a settings file; remembers which elements have been read.
 
-    An absent element has the default value, or none. A wrong value raises `InputError`.
+    An absent element has its default value, if there is one. A wrong value raises `InputError`.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ class Settings:
         return [self._number(tag, part.strip()) for part in parts]
 
     def weights(self, tag: str) -> dict[str, float]:
-        """Return the number of each word; words with 0 are left out."""
+        """Return the number given for each word; words with the number 0 are left out."""
         numbers = {key: self._number(tag, value) for key, value in self._pairs(tag)}
         return {key: number for key, number in numbers.items() if number}
 

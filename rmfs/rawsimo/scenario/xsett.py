@@ -45,7 +45,7 @@ class ImportedSettings(NamedTuple):
     Attributes
     ----------
     table
-        The scenario, not yet validated; files in it are absolute.
+        The scenario, not yet validated; paths of files in it are absolute.
     notes
         What was left out, and what differs in rmfs.
     layout

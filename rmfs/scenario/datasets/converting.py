@@ -61,12 +61,12 @@ def convert(
     layout
         A name of `LAYOUTS`.
     paths
-        Its files, in the order of `Layout.files`; further files have the same columns as the last
-        one.
+        The files of the data set, in the order of `Layout.files`; any further files have the same
+        columns as the last of these.
     out
         The .csv file to write.
     begin, end
-        Times: orders from `begin` on and before `end` are used. Default: all orders.
+        Only orders from `begin` on and before `end` are used. Default: all orders.
     share
         Probability with which each of these orders is used.
     seed

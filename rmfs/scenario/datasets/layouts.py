@@ -25,7 +25,7 @@ class Layout(NamedTuple):
     Attributes
     ----------
     files
-        Names of its files; each must be given, in this order.
+        Names of the files of the data set; each must be given, in this order.
     source
         Source of the data set.
     read
@@ -107,8 +107,8 @@ def jd(paths: Sequence[Path], orders: Orders) -> None:
 def olist(paths: Sequence[Path], orders: Orders) -> None:
     """Read orders and their items, one unit each; omit cancelled and unavailable orders.
 
-    An order is due at the earliest shipping limit of its items; limits before the order time are
-    ignored.
+    An order is due at the earliest `shipping_limit_date` of its items; dates before the order time
+    are ignored.
     """
     columns = ("order_id", "order_status", "order_purchase_timestamp")
     for row in rows(paths[0], columns):

@@ -56,7 +56,10 @@ class Orders:
     left_out: Counter[str] = field(default_factory=Counter)
 
     def begin(self, name: str, time: datetime | float) -> Order | None:
-        """Return the order of a name, created with this time if it is new; None if it is unused."""
+        """Return the order with this name, or None if it is not used.
+
+        The first call for a name decides whether to use the order and, if so, creates it.
+        """
         if name not in self.by_name:
             taken = self.takes(time)
             self.by_name[name] = Order(time) if taken else None
@@ -64,9 +67,9 @@ class Orders:
         return self.by_name[name]
 
     def taken(self) -> list[tuple[str, Order]]:
-        """Return (name, order) for all used orders with lines, sorted by time, then as in the file.
+        """Return (name, order) of all orders used, sorted by time, then as in the file.
 
-        Used orders without a line are counted in `left_out`.
+        Orders without a line are omitted, and counted in `left_out`.
         """
         found = [(name, one) for name, one in self.by_name.items() if one is not None]
         self.left_out[NO_LINE] += sum(not one.units for _, one in found)

@@ -1,4 +1,4 @@
-"""Rows of foreign CSV files, by column name."""
+"""Rows of the CSV files of public data sets, with fields by column name."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Row:
         return number
 
     def moment(self, column: str, *further: str) -> datetime:
-        """Return a time without zone, in ISO 8601 or one of the given formats of `strptime`.
+        """Return a time without time zone, in ISO 8601 or one of the given formats of `strptime`.
 
         Raises
         ------
@@ -98,7 +98,7 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
     Parameters
     ----------
     columns
-        Required columns; `a|b` is a column named a or b, whose field is found under a.
+        Required columns; `a|b` is a column named a or b, and a row has its field under a.
 
     Raises
     ------

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Rest:
-    """Stores the time at which a process may continue after a failure or a down period.
+    """Stores the time at which a process may continue after a failed attempt or a down period.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class BacklogOrders:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> OrderArrival | None:
-        """Return an order; None if the backlog is full or paused, or stock cannot serve one."""
+        """Return an order; None if the backlog is full or paused, or stock cannot serve it."""
         # called in any case, since it has to observe every change of stock
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
         if not self._rest.ends(now_us) or not wanted:

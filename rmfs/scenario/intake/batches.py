@@ -32,7 +32,7 @@ class Batch(NamedTuple):
 
 
 def add(time_s: float, number: int) -> Batch:
-    """Return a batch of a given number of arrivals, which does not depend on the state."""
+    """Return a batch of a given number of arrivals, whatever the state."""
     return Batch(time_s, partial(_fewer_than, number))
 
 
@@ -50,8 +50,9 @@ class Batches(Generic[T]):
     cycle_s, gone_s
         Length of the cycle, and time by which it has advanced at time zero, in s.
     make
-        Function of k, the time (us) and the state that creates the k-th order or bundle, counted
-        over all batches. If it returns None, because nothing can be created, the batch ends.
+        Function that creates the k-th order or bundle, counted over all batches. Its arguments are
+        k, the time (us) and the state. If it returns None, because nothing can be created, the
+        batch ends.
     """
 
     def __init__(
@@ -75,7 +76,7 @@ class Batches(Generic[T]):
         self._come = 0
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next order or bundle of a batch that is due; None if all such are complete."""
+        """Return the next order or bundle of a batch that is due; None if all are complete."""
         while self.next_us <= now_us:
             if self._lacks(state, self._come):
                 thing = self._make(self._ordinal, now_us, state)

@@ -44,9 +44,9 @@ def bundle_intake(
     Parameters
     ----------
     skus
-        Those of the scenario (`sku_set(scenario.skus)`).
+        The SKUs of the scenario (`sku_set(scenario.skus)`).
     site
-        Required properties of the warehouse.
+        The properties of the warehouse on which arrivals depend.
     seed
         The run's seed.
     recorder

@@ -43,8 +43,8 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     Parameters
     ----------
     path
-        Further numbers that select the substream (see `Substreams`), for orders with a numbering of
-        their own.
+        Numbers that select the substreams (see `Substreams`), for orders that are numbered
+        separately, such as those of batches.
 
     Raises
     ------

@@ -59,7 +59,7 @@ def export_stream(
     site: Site,
     seed: int = 0,
 ) -> ExportedStream:
-    """Write the orders or bundles of a scenario that arrive from time zero to its end.
+    """Write the orders or bundles of a scenario that arrive from time zero to the end of the run.
 
     Parameters
     ----------
@@ -73,9 +73,9 @@ def export_stream(
     Raises
     ------
     InputError
-        If the stream depends on events of a run (a constant backlog, rates tied to active stations,
-        batches that fill up), which can only be recorded; if a file of the scenario is invalid; or
-        if `path` has another suffix or cannot be written.
+        If the stream depends on events of a run and can only be recorded (a constant backlog, rates
+        tied to active stations, batches that fill up the backlog or the stock); if a file of the
+        scenario is invalid; or if `path` has another suffix or cannot be written.
     """
     skus = sku_set(scenario.skus)
     recorder = StreamRecorder()
@@ -99,7 +99,7 @@ def export_stream(
 def order_stream_of(scenario: Scenario, skus: SkuSet, seed: int) -> OrderStream:
     """Return all orders of a scenario, which must not depend on a run.
 
-    Rates are for one pick station.
+    If the rates are per pick station, they are those for one pick station.
     """
     recorder = StreamRecorder()
     end_us = first_us(scenario.warmup_s + scenario.duration_s)

@@ -27,7 +27,7 @@ class OrderArrival(NamedTuple):
     due_us
         Due time.
     redraws
-        Number of draws whose SKU had too few uncommitted units.
+        Number of draws rejected because the SKU had too few units that no earlier order needs.
     in_file
         Its position among the orders of a file, or -1.
     priority
@@ -70,7 +70,7 @@ class BundleArrival(NamedTuple):
 
 @runtime_checkable
 class Redrawn(Protocol):
-    """A process that has already drawn its next arrival."""
+    """A process that draws its next arrival in advance, and can draw it again."""
 
     def redraw(self, now_us: int) -> None:
         """Redraw the next arrival."""
@@ -97,11 +97,11 @@ class Intake(Generic[T]):
     Parameters
     ----------
     processes
-        The processes; simultaneous arrivals are ordered by process.
+        The processes; simultaneous arrivals come in the order of their processes.
     record
         Called with each arrival.
     stream
-        The orders or bundles of a file, if they come from one.
+        The orders or bundles of the file from which they come, if any.
     finish
         Transforms each arrival.
     """

@@ -1,4 +1,4 @@
-"""Bundles of SKUs that waiting orders lack."""
+"""Replenishment of the SKUs that waiting orders lack."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class NeededBundles:
-    """Orders bundles of SKUs that run short (a process of an intake).
+    """Generates bundles of SKUs that run short (a process of an intake).
 
     The units of a SKU left for further orders are those stored and those in bundles that wait or
     are on their way, minus those ordered. The SKU is short if fewer units than the reorder point

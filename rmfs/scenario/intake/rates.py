@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 MOST_PER_H = 1e8
-"""Maximum rate, so that arrivals are several microseconds apart."""
+"""Maximum rate, at which arrivals are 36 microseconds apart on average."""
 
 
 class Rate(Protocol):
@@ -45,7 +45,7 @@ def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: in
     Parameters
     ----------
     config
-        The table `profile`.
+        The table `profile` of a scenario's demand or replenishment.
     per_h
         Mean rate; with a high-low profile, the low rate.
     scale

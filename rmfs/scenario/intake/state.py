@@ -47,7 +47,7 @@ class State(Protocol):
 
     @property
     def load(self) -> float:
-        """Space units of units that are stored, on their way into pods, or waiting."""
+        """Space units taken by the units that are stored, on their way into pods, or waiting."""
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:

@@ -48,7 +48,7 @@ class Poisson:
     Parameters
     ----------
     substreams
-        Candidate k takes its gap and its acceptance from substream k.
+        Substream k determines the time between candidates k - 1 and k, and whether k is accepted.
     openings
         Down periods, in which the rate is zero.
     until_us

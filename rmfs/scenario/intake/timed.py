@@ -85,7 +85,7 @@ def _at_zero(ordinal: int) -> Candidate:
 
 
 def share_of(tied_to: TiedTo) -> Callable[[State], float] | None:
-    """Return the function that reads the share of active stations; None for a rate tied to none."""
+    """Return a function that reads the share of active stations; None if `tied_to` is `nothing`."""
     if tied_to == "pick-stations":
         return attrgetter("active_pick_share")
     if tied_to == "replenishment-stations":

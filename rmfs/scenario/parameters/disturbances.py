@@ -56,8 +56,8 @@ class LateMotions(Block):
     )
     repair: bool = Field(
         True,
-        description="whether to replan each robot that waits behind, alone or together with the "
-        "late robot, where the replanned robots then arrive earlier in total",
+        description="whether to replan each robot that has to wait for a late one, alone or "
+        "together with it, if the sum of arrival times then decreases",
     )
 
     @pydantic.field_validator("most_s")

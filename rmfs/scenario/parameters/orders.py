@@ -37,7 +37,7 @@ class Orders(Block):
 
 
 class WordOrders(Block):
-    """Orders that are words: one line for each letter in its colour."""
+    """Orders that are words in coloured letters: one line for each distinct coloured letter."""
 
     content: Literal["words"] = Field(
         "words", description="each order is a word in coloured letters"

@@ -23,13 +23,13 @@ TimesFile = Annotated[Path, pydantic.Strict(strict=False), existing(".csv")]
 
 
 class ConstantTime(Block):
-    """The time per unit of the station in the layout, without variation."""
+    """Every unit takes the time that the layout gives for the station."""
 
     distribution: Literal["constant"] = "constant"
 
 
 class GammaTime(Block):
-    """Gamma distributed; the mean is the time per unit of the station in the layout."""
+    """Gamma distribution, with the mean that the layout gives for the station."""
 
     distribution: Literal["gamma"] = "gamma"
     variation: Variation = Field(
@@ -39,7 +39,7 @@ class GammaTime(Block):
 
 
 class LognormalTime(Block):
-    """Lognormal; the mean is the time per unit of the station in the layout."""
+    """Lognormal distribution, with the mean that the layout gives for the station."""
 
     distribution: Literal["lognormal"] = "lognormal"
     variation: Variation = Field(
@@ -54,8 +54,8 @@ class MeasuredTime(Block):
     distribution: Literal["empirical"] = "empirical"
     file: TimesFile = Field(
         description="CSV file, relative to the scenario file, with a column time_s: picking "
-        "times of single units in s. The time a unit occupies the robot changes by the same "
-        "amount"
+        "times of single units in s. The time for which a unit occupies the robot changes in the "
+        "same proportion"
     )
 
 
@@ -208,8 +208,8 @@ class Roster(Block):
 class Pickers(Block):
     """Pickers at the pick stations; see docs/pickers.md.
 
-    With the default values all pickers are alike and always present, and every unit takes the
-    station's time.
+    With the default values all pickers are alike and always present, and every unit takes the time
+    that the layout gives for the station.
     """
 
     unit_time: UnitTime = Field(ConstantTime(), description="how long a unit occupies a picker")

@@ -30,7 +30,7 @@ class ConstantRate(Block):
 
 
 class Steps(Block):
-    """A rate in steps, repeated every cycle, whose mean over a cycle is the given rate."""
+    """A rate that changes in steps, the same in every cycle; its mean is the given rate."""
 
     kind: Literal["steps"] = "steps"
     cycle_s: Cycle = DAY_S

@@ -26,8 +26,8 @@ class Stock(Block):
     initial_share: Share = Field(0.7, description="share of the pods' capacity filled at time zero")
     order_cover: NotNegative = Field(
         0.0,
-        description="of each SKU, first store whole bundles with at least this multiple of the "
-        "units that the file of orders contains within the run; needs demand.mode = stream",
+        description="first store, of each SKU, whole bundles with at least this multiple of the "
+        "units ordered in the file of orders during the run; needs demand.mode = stream",
     )
 
 

@@ -46,7 +46,7 @@ class Affinity:
             array.setflags(write=False)
 
     def samplers(self, skus: int) -> Callable[[int], Categorical | None]:
-        """Return a function that returns, for a SKU, the sampler of the SKU on the next line.
+        """Return a function that returns, for a SKU, a sampler that draws the SKU of the next line.
 
         A sampler takes memory in proportion to the number of SKUs, so only recent samplers are
         cached. A sampler is None if no SKU has a positive affinity to the given one.

@@ -30,7 +30,7 @@ def read_sku_table(path: Path) -> SkuFileContent:
 
     If all SKUs are whole numbers, these are their ids; otherwise all SKUs are numbered from 0 and
     keep their texts as names. Without `popularity`, all are equally popular. A file of orders (with
-    columns `order` and `quantity`) is also accepted: its SKUs are as popular as their number of
+    columns `order` and `quantity`) is also accepted: the popularity of a SKU is then its number of
     order lines.
 
     Raises

@@ -63,7 +63,7 @@ def draw_affinity(config: GeneratedAffinity, seed: int, count: int) -> Affinity:
     Parameters
     ----------
     config
-        At most count (count - 1) / 2 pairs.
+        Parameters of the affinity; its `pairs` must be at most count (count - 1) / 2.
     seed
         Seed of the SKUs.
     count

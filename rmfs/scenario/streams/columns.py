@@ -17,8 +17,8 @@ MOST_ROWS = 5_000_000
 class Columns:
     """The position of each column in a row.
 
-    Columns with other names are the user's own; a column without a name, as pandas writes for its
-    index, is ignored.
+    Columns whose names are not known to rmfs are the user's own; a column without a name, as pandas
+    writes for its index, is ignored.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class Columns:
     Raises
     ------
     ValueError
-        If a column is missing or duplicate, or its name looks like a typing error.
+        If a column is missing or occurs twice, or a name looks misspelt.
     """
 
     def __init__(self, names: Sequence[str], rows: Rows) -> None:

@@ -1,4 +1,4 @@
-"""Further contents of a file of orders, which are kept so that results can be joined with them."""
+"""Names and additional columns of a file of orders, kept so that results can be joined to them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class OrderFile:
-    """Names and further columns of n orders with a total of m lines, as in their file.
+    """Names and additional columns of n orders with a total of m lines, as in their file.
 
     In a file of bundles, each bundle is an order of one line.
 
@@ -27,8 +27,8 @@ class OrderFile:
     line
         Number of the line (CSV) or row (Parquet) of each order line in the file, shape (m,).
     columns
-        For each further column of the file, its m texts: an array of indices, shape (m,), and the
-        tuple of distinct texts to which the indices refer.
+        For each additional column, its m texts: an array of indices, shape (m,), and the tuple of
+        distinct texts to which the indices refer.
     """
 
     names: tuple[str, ...]
@@ -42,7 +42,7 @@ class OrderFileBuilder:
     Parameters
     ----------
     columns
-        Names of the further columns of the file.
+        Names of the additional columns of the file.
     """
 
     def __init__(self, columns: Sequence[str]) -> None:
@@ -57,7 +57,7 @@ class OrderFileBuilder:
         self._names.append(name)
 
     def add_line(self, number: int, further: Sequence[str]) -> None:
-        """Add a line to the last order, given its number in the file and its further fields."""
+        """Add a line to the last order, given its number in the file and its additional fields."""
         self._line.append(number)
         for codes, texts, text in zip(self._codes, self._texts, further, strict=True):
             codes.append(texts.setdefault(text, len(texts)))

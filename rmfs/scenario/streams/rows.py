@@ -24,7 +24,7 @@ LONGEST_NAME = 200
 """Maximum length of the name of an order."""
 
 MOST_COMPARED = 10_000
-"""Maximum number of SKUs searched for a similar name in error messages."""
+"""Maximum number of SKUs among which an error message looks for similar names."""
 
 
 class Rows(Protocol):
@@ -143,7 +143,7 @@ class OrderRows(_StreamRows):
     zero
         Date and time of time zero, for times in ISO 8601 (see `Times`).
     classes
-        Names of the classes of orders; without any, a column `priority` is the user's own.
+        Names of the classes of orders. Without classes, a column `priority` is an additional one.
     """
 
     required = frozenset(("time", "order", "sku", "quantity"))
@@ -232,7 +232,7 @@ class OrderRows(_StreamRows):
 
 
 class BundleRows(_StreamRows):
-    """Rows of bundles: each is a bundle.
+    """Rows of bundles: each row is one bundle.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """Affinity of SKUs, measured by how much more often pairs recur than they would by chance.
 
-In the generator, the SKU of a further line is drawn with some probability from those that are
-ordered together with the SKU of the previous line. This probability is fitted by simulating the
-generator until pairs of neighbouring lines recur as often as in the file.
+In the generator, the SKU of each line after the first is drawn with some probability from those
+that are ordered together with the SKU of the previous line. This probability is fitted by
+simulating the generator until pairs of neighbouring lines recur as often as in the file.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ TRIES = 16
 
 
 def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> float:
-    """Return how many times as often pairs recur as they would if SKUs were independent.
+    """Return how often pairs of SKUs recur, relative to SKUs that are drawn independently.
 
     The result is nan if there are fewer than `LEAST_PAIRS` pairs, or no pair recurs.
 
@@ -70,7 +70,7 @@ def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> floa
 def neighbours(
     sku: NDArray[np.int64], first_line: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return both SKUs and the order of all pairs of consecutive lines, shape (m,) each."""
+    """Return for each pair of consecutive lines its two SKUs and its order, shape (m,) each."""
     order = np.repeat(np.arange(len(first_line) - 1), np.diff(first_line))
     here = np.flatnonzero(order[1:] == order[:-1])
     return sku[here], sku[here + 1], order[here]
@@ -79,7 +79,7 @@ def neighbours(
 def fit_affinity(
     sku: NDArray[np.int64], first_line: NDArray[np.int64], skus: Drawn, seed: int
 ) -> Estimate | None:
-    """Fit the share of further lines drawn by affinity; None if too few pairs recur.
+    """Fit the share of affinity (see `Affinity`); None if too few pairs of SKUs recur.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ def agreements(
     seed
         Seed of the run whose orders are compared.
     p_popularity, p_arrivals
-        p values of the goodness-of-fit tests, which are copied to the figures they belong to.
+        p values of the goodness-of-fit tests of popularity and arrivals; the result includes them.
     """
     rate_per_day = len(stream) / days
     # a line that follows affinity costs time in proportion to the SKUs

@@ -33,7 +33,7 @@ class Estimate(NamedTuple):
 
 
 class Agreement(NamedTuple):
-    """Agreement of a figure between the data and the twin.
+    """A figure, such as a mean, of the data and of the twin, for comparison.
 
     Attributes
     ----------

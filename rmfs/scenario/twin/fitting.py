@@ -40,7 +40,7 @@ MOST_LISTED = 200
 
 @dataclass(frozen=True, slots=True)
 class Twin:
-    """A generator fitted to orders, with its fit.
+    """A generator fitted to orders, with figures that show how well it fits.
 
     Attributes
     ----------
@@ -84,7 +84,8 @@ def fit_twin(
     Raises
     ------
     InputError
-        If the file is invalid, contains too few orders, or no gamma weights fit its popularity.
+        If the file is invalid, contains too few orders, or no gamma weights fit the popularity of
+        its SKUs.
     """
     skus = sku_set(SkuFile(file=path))
     stream = read_orders(path, skus)

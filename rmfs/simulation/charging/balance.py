@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Balance(NamedTuple):
-    """Long-run power of a fleet and its energy stations, in W.
+    """Long-run power of a fleet and of its energy stations (chargers, swap stations), in W.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ def balance(layout: Layout, energy: Energy) -> Balance:
 
 
 def working_w(layout: Layout, energy: Energy) -> float:
-    """Estimate the power in W of a fleet that drives at top speed, half the time with a full pod.
+    """Estimate the power in W of a fleet at top speed, half the time with a half-full pod.
 
     Starts and turns take more, waiting takes less; at the shipped sites these effects roughly
     cancel. It is an estimate, not a bound.

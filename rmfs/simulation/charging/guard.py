@@ -70,9 +70,9 @@ class EnergyGuard:
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:
-        """Before tasks are assigned, send to charge any robot that could not complete another task.
+        """Send every robot that could not complete another task to charge.
 
-        A robot that carries a pod stores it first.
+        To be called before tasks are assigned. A robot that carries a pod stores it first.
         """
         view = self._view
         for robot in [*view.asking.values(), *view.resting.values()]:

@@ -36,7 +36,7 @@ BEND_RAD = np.pi / 2
 
 
 def most_w_per_kg(given: Energy, kind: RobotKind) -> float:
-    """Return the maximum mean power per kg of motion from rest to rest, in W/kg."""
+    """Return an upper bound on the mean power per kg in motion from rest to rest, in W/kg."""
     v, a, b = kind.top_speed_m_s, kind.acceleration_m_s2, kind.deceleration_m_s2
     roll = given.rolling_resistance * GRAVITY * v
     kinetic = (1 + given.inertia_share) / 2 * v / (1 / a + 1 / b)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ChargeService:
-    """The service of one plug-in place; traffic charges the robot, and this service ends it.
+    """The service of one plug-in place: it determines when the robot there stops charging.
 
     Attributes
     ----------

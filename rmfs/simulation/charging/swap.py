@@ -22,7 +22,7 @@ class SwapService:
     Attributes
     ----------
     stock
-        For each battery, its level (share) at its arrival, and the time of arrival (s).
+        For each battery, the level (share) with which it arrived, and the time of its arrival (s).
     """
 
     def __init__(

@@ -70,7 +70,7 @@ Measured with the POA rule `rollout` at the site `small-arrivals` on the same ma
 
 
 class Computed(ABC):
-    """Solves in this process, synchronously."""
+    """Solves each question in the process of the simulation, which waits for the answer."""
 
     waits = False
 

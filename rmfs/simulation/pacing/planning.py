@@ -79,7 +79,7 @@ class WallPlanning(_Planning):
 
 
 class ReplayPlanning(Model):
-    """Plans take the times recorded in another run, whose planners and invocation are used."""
+    """Plans take the times recorded in another run, whose other planning parameters also apply."""
 
     model_config = _Planning.model_config
     mode: Literal["replay"] = "replay"
@@ -104,7 +104,7 @@ _EXAMPLES = {"fixed": "SECONDS", "replay": "RUN_DIR"}
 
 
 def planning_settings(overrides: Overrides) -> PlanningSettings:
-    """Parse how much time path planning takes.
+    """Parse the settings that determine how much simulated time path planning takes.
 
     Parameters
     ----------
@@ -153,7 +153,8 @@ def let_plans_take_time(
     planner
         Name of the fleet's path planner.
     read
-        Returns the parameters of planning of a recorded run by its folder, and its searches.
+        Function that reads the planning parameters and the searches of a recorded run from its
+        folder.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class WallPacing(_Mode):
     speed: Positive = 1.0
     """Simulated seconds per second of wall time while an optimiser is running."""
     workers: Annotated[int, Field(ge=1, le=64)] = 2
-    """Number of single-threaded worker processes; further questions wait for one."""
+    """Number of single-threaded worker processes; if all are busy, questions wait."""
     patience_s: Positive = 300.0
     """Wall time in s after which a worker that has not answered is stopped and replaced."""
 
@@ -99,8 +99,8 @@ def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) 
     mode
         `instant`, `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR`.
     overrides
-        Pairs of path and value for its parameters, such as `(["speed"], 2.0)`; a path that begins
-        with `planning` is one of path planning.
+        Pairs of path and value for its parameters, such as `(["speed"], 2.0)`; paths that begin
+        with `planning` concern path planning.
 
     Raises
     ------

@@ -53,7 +53,7 @@ class Wall:
     Parameters
     ----------
     settings
-        Speed, number of workers and patience.
+        Parameters of the mode `wall`.
     """
 
     waits = True

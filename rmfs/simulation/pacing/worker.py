@@ -1,7 +1,7 @@
 """A worker process: answers questions one after another until its connection is closed.
 
 It is started with a bare interpreter, not by forking or by importing the user's script again, so
-that a script needs no guard and a notebook works.
+that a script needs no `if __name__ == "__main__"`, and a notebook works.
 """
 
 from __future__ import annotations

@@ -108,7 +108,7 @@ class Worker:
             self.is_ready = True
 
     def ask(self, number: int, load: bytes) -> None:
-        """Send a question; `load` contains the function and its pickled argument."""
+        """Send a question; `load` is the pickled pair of the function and its argument."""
         self.number = number
         # a worker that has just died is found out when its reply is awaited
         try:

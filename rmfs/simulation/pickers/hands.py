@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rmfs.world.tasks import Pick, PickTask
 
 TIMES, ERRORS, SPEEDS = range(3)
-"""Random streams of each picker, separate so that enabling one cause changes no other draws."""
+"""Random streams of each picker: switching on errors, for example, changes no drawn times."""
 
 
 class Hands(Observer):
@@ -53,7 +53,7 @@ class Hands(Observer):
         return self._staff.at_station[station] is not None
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the task's first pick on the shown face for an order at the station, or None."""
+        """Return the first pick on the shown face for an order at the station, or None."""
         faces, shown = self._faces, self._shown(station)
         if faces is None or shown < 0:
             return None

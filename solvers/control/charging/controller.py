@@ -34,9 +34,9 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
     Every `period_s`, a model is given the battery levels of all robots, the charging places, and a
     forecast of the number of robots needed for work. Over `slots` time slots, it minimises the time
     for which robots are missing at work plus the robot time that later charging will take. Robots
-    whose stay is due are sent when they are free; charging robots stay as long as the current plan
-    says. Until the first answer, and after a failure, the rule `threshold` applies, with
-    `below_share` and `until_share`.
+    whose stay at a place is due are sent when they are free; charging robots stay as long as the
+    current plan says. Until the first answer, and after a failure, the rule `threshold` applies,
+    with `below_share` and `until_share`.
     """
 
     parameters_model = ScheduleParameters
@@ -89,12 +89,12 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
             yield from self._carry_out(batteries)
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Return `until_share` for a robot below `below_share`, else 0, as the rule `threshold`."""
+        """Return `until_share` for a robot below `below_share`, else 0, like rule `threshold`."""
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 
     def target_share(self) -> float:
-        """Return the level of a full battery, as the schedule determines when robots leave."""
+        """Return the level of a full battery, because the schedule determines when robots leave."""
         batteries = self.view.batteries
         return 1.0 if batteries is None else batteries.given.full_share
 

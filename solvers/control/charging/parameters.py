@@ -42,9 +42,9 @@ class ScheduleParameters(LevelParameters):
     window_s: Positive = 1200.0
     """Length in seconds of the past period from which the number of needed robots is forecast."""
     cases: Count = 4
-    """Number of cases of the forecast."""
+    """Number of equally likely cases of the number of needed robots in the forecast."""
     nodes: Count = 20
-    """Limit of HiGHS in nodes."""
+    """Maximum number of branch-and-bound nodes for HiGHS."""
     work_s: Positive = 0.25
     """Limit of CP-SAT in deterministic seconds, which are close to wall time."""
     gap: NotNegative = 0.005

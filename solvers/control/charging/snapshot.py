@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Group:
-    """A group of identical energy stations.
+    """A group of identical chargers or swap stations.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Group:
 
 
 def groups_of(view: View, batteries: Batteries) -> list[Group]:
-    """Group the stations for energy by kind and parameters, in the order of the layout."""
+    """Group the chargers and swap stations by kind and parameters, in the order of the layout."""
     alike: dict[tuple[float, float, float], list[RecoveryStation]] = {}
     for station in view.recovery_stations:
         kind = view.layout.stations[station.index].kind
@@ -66,7 +66,7 @@ def groups_of(view: View, batteries: Batteries) -> list[Group]:
 def slot_s(groups: Sequence[Group], batteries: Batteries, share: float) -> float:
     """Return the time in which the most powerful place charges a share of a battery, in s.
 
-    If batteries are only swapped, return the longest time per swap of any group in the long run.
+    If the site only swaps batteries, return the longest mean time per swap (`swaps_s`) of a group.
     """
     power_w = max((group.power_w for group in groups), default=0.0)
     if power_w > 0:

@@ -1,4 +1,4 @@
-"""POA pile-on: decides orders and pods jointly by a model; PPS must be its dummy."""
+"""POA pile-on: assigns orders and chooses pods jointly by a model; PPS must be `dummy`."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     `triggers`: a station runs out of work within the horizon, a pod reaches a station, or a slot is
     free for which nothing is planned. It determines which orders go to which station, and which
     pods are called for them. It also returns *prospects*: orders that the same pods can serve as
-    soon as slots are free. Slots and robots are served from this plan until parts of it become
-    invalid.
+    soon as slots are free. Free slots get orders, and free robots fetch pods, from this plan; parts
+    that have become invalid are dropped.
 
-    A robot sent for a station fetches the nearest of the pods called for this station. If the
+    A robot due to bring a pod to a station fetches the nearest of the pods called for it. If the
     optimiser fails, pod match decides. For replenishment, and for open requests that no pod called
     or under way can serve, PPS lexicographic with its defaults decides.
     """
@@ -122,10 +122,10 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     # --- pods -----------------------------------------------------------------------------------
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
-        """Return the nearest pod called for a station that can serve its open requests.
+        """Return the nearest pod that is called for a station and can serve its open requests.
 
-        If no pod is called for the station and its open requests lack units, the heuristic chooses
-        a pod; otherwise the result is -1.
+        If no pod is called for the station, and pods under way do not bring all units that its
+        orders need, PPS lexicographic chooses a pod. In all other cases, the result is -1.
         """
         called = self._plan.pods[station.index]
         pods = [pod for pod in called if self._plan.useful(pod, station)]
@@ -137,9 +137,9 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         return self._heuristic.pick_pod(robot, station) if missing.any() and not called else -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Choose the pod by the heuristic."""
+        """Choose the pod by PPS lexicographic."""
         return self._heuristic.replenishment_pod(robot, station)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose the next station of a carried pod by the heuristic."""
+        """Choose the next station of a carried pod by PPS lexicographic."""
         return self._heuristic.next_station(robot, stations)

@@ -60,7 +60,8 @@ class JointParameters(SearchParameters):
     """Additional value of assigning an order, in seconds of a robot, per second that the order has
     waited, times the weight of its class."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 1
-    """Number of slots per station that are reserved for orders served by the pod at its head."""
+    """Number of slots per station that are reserved for orders that the pod at the head of the
+    station's queue can serve."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 20
     """Steps of the search for a bound on the value of each decision. The bound is only recorded.
     More steps improve it; they do not count as work."""

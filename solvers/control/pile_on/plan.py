@@ -52,7 +52,8 @@ class Plan:
     view
         The world.
     kept_slots
-        Number of slots of each station that are reserved for orders served by the pod at its head.
+        Number of slots of each station that are reserved for orders that the pod at the head of
+        its queue can serve.
     later
         Whether items may be assigned while pods for some of their lines are still to come.
     split_orders
@@ -101,7 +102,7 @@ class Plan:
         items
             Items behind the indices of the solution.
         call
-            The question that the solution answers; None: the heuristic.
+            The question that the solution answers; None: it is that of pod match.
         """
         pod_station, pod_robot = (np.asarray(solution[k]) for k in ("pod_station", "pod_robot"))
         for pod in np.flatnonzero(pod_station >= 0).tolist():
@@ -124,9 +125,9 @@ class Plan:
     def due(self, station: PickStation) -> Iterator[Planned]:
         """Yield items that can be assigned to a station now, one at a time.
 
-        Items that the pod at the head can serve come first and may use the reserved slots, as may
-        items that a called pod can serve if it serves no open request of the station. Invalid
-        items are dropped and counted as stale: those that have left the backlog and, unless
+        Items that the pod at the head can serve come first. They may use the reserved slots, and so
+        may items that a called pod can serve, if this pod serves no open request of the station.
+        Invalid items are dropped and counted as stale: those that have left the backlog and, unless
         `later`, those whose stock has gone.
         """
         self._forget_pods(station)

@@ -51,7 +51,8 @@ class PileOnTasksParameters(JointParameters):
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
     whenever a slot can be filled, as in M1G."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Number of slots per station that are reserved for orders served by the pod at its head."""
+    """Number of slots per station that are reserved for orders that the pod at the head of the
+    station's queue can serve."""
     reward_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 40.0
     """Value of each additional order that a visit serves, in seconds of a robot."""
     visit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0

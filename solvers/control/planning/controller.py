@@ -48,13 +48,13 @@ class PlanningControl(JointAllocation[PlanningParameters]):
     plans several visits per station, with the orders that each serves: whole orders, which keep
     their slot until their last pod has come, or separate lines (`split`). Each plan starts from the
     previous one. Only two kinds of steps are carried out: orders whose first pod is under way get
-    slots, and a station whose pods under way have less work than `horizon_s` is sent its next pod
-    by the nearest free robot.
+    slots, and when a station has less than `horizon_s` of work on pods under way, the nearest
+    free robot brings it its next pod.
 
     All other decisions are made by rules. A robot with a pod continues while there is work for it
     at its station, takes it to a replenishment station where bundles for this pod wait, or parks it
-    where PSA says. While the stock is below `stock_floor`, some robots work for bundles
-    (`bundle_share`); robots that no pick station needs do so as well, up to `stock_ceiling`. If the
+    where PSA says. While the stock is below `stock_floor`, some robots (`bundle_share`) bring pods
+    for bundles; while it is below `stock_ceiling`, so do robots that no pick station needs. If the
     optimiser fails, its start rule makes the plan.
     """
 

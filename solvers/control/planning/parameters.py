@@ -48,15 +48,15 @@ class PlanningParameters(SearchParameters):
     that the order has waited."""
     late_s: NotNegative = 0.0
     """Additional value of completing an order that is due, in seconds of a robot, times the weight
-    of its class. Before the due time, the value falls by the factor e for every `late_within_s`
-    left. As later visits count less (`decay`), this is the price of tardiness (apparent tardiness
-    cost, Vepsalainen and Morton 1987). 0: due times do not count."""
+    of its class. Before the due time, the value is smaller: by the factor e for every
+    `late_within_s` that is left. As later visits count less (`decay`), this is the price of
+    tardiness (apparent tardiness cost, Vepsalainen and Morton 1987). 0: due times do not count."""
     late_within_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 300.0
-    """Time in seconds within which the value `late_s` falls by the factor e. It should be about as
-    long as the time from a plan to its last visit."""
+    """Seconds before the due time at which the value `late_s` is smaller by the factor e. It should
+    be about as long as the time from a plan to its last visit."""
     open_s: NotNegative = 60.0
-    """Additional value of a line whose order already has a slot, which keeps plans stable and frees
-    slots."""
+    """Additional value of serving a line whose order already has a slot, in seconds of a robot.
+    This keeps plans stable and frees slots."""
     visit_s: NotNegative = 100.0
     """Value of a visit, whatever it serves, in seconds of a robot: it keeps the station busy."""
     balance: NotNegative = 0.0
@@ -70,18 +70,18 @@ class PlanningParameters(SearchParameters):
     the value of pods and get no slots. 0: none."""
     scenarios: Count = 4
     """With `expected_s`, number of draws of future orders for each plan; the value of a future
-    order is divided by it."""
+    order is divided by this number."""
     expected_worth: Annotated[float, pydantic.Field(gt=0, le=1)] = 1.0
     """With `expected_s`, value of serving all orders of a draw, as a share of their value if they
     were waiting."""
     stock_floor: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.6
-    """Share of used space below which some robots always work for bundles; above it, only robots
-    that no pick station needs do."""
+    """Used share of the space on pods below which some robots always bring pods to replenishment
+    stations; above it, only robots that no pick station needs do so."""
     stock_ceiling: Annotated[float, pydantic.Field(ge=0, le=1)] = 1.0
-    """Share of used space from which robots no longer start for bundles, so that they are available
-    when a pick station needs them."""
+    """Used share of the space on pods from which robots no longer set out for replenishment
+    stations, so that they are available when a pick station needs them."""
     bundle_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.15
-    """Share of the robots, at least one, that work for bundles below the floor."""
+    """Share of the robots, at least one, that bring pods for bundles below `stock_floor`."""
     robots_per_station: Count = 9
     """Maximum number of robots at, or on their way to, one pick station."""
     rest: RestRule = "nearest"

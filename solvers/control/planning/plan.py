@@ -69,7 +69,7 @@ class Plan:
         self._call: list[Call | None] = [None for _ in view.pick_stations]
 
     def take(self, solution: Mapping[str, Any], memo: Memo, call: Call | None) -> None:
-        """Replace the plans of the stations that were part of the question by a solution."""
+        """Adopt a solution as the plan of the stations that were part of the question."""
         visits: dict[int, list[tuple[int, int]]] = {}
         served = zip(memo.lines, memo.order_of, solution["line_visit"].tolist(), strict=True)
         for line, number, visit in served:
@@ -112,7 +112,7 @@ class Plan:
         return {one.item.key for station in stations for one in self._orders[station]}
 
     def splitting(self, stations: Iterable[int]) -> Splitting:
-        """Return the capacity to split orders that lines planned for these stations leave."""
+        """Return the capacity left for split orders, given the lines planned for these stations."""
         planned = [one.item for station in stations for one in self._orders[station]]
         orders = [item.order for item in planned if item.line is not None]
         return Splitting(self._view, self._split_orders, orders)
@@ -153,7 +153,7 @@ class Plan:
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:
-        """Return how many units pods under way supply, to orders with and without a slot."""
+        """Return how many units the pods under way supply, also to orders without a slot."""
         view, index = self._view, station.index
         coming = under_way(view, station)
         units = sum(len(task.picks) for task in station.tasks.values())

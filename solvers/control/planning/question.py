@@ -48,8 +48,8 @@ def solve(question: Question) -> Answer:
     Returns
     -------
     Answer
-        `pods`: new visits per station, padded with -1, shape (S, V); `order_station` and
-        `line_visit` as in the model.
+        `pods`: pods of the new visits per station, padded with -1, shape (S, V); `order_station`
+        and `line_visit` as in the model.
     """
     data = question.data
     found = planning.solve(

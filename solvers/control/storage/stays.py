@@ -1,4 +1,4 @@
-"""PSA stays: zones for returning pods, chosen by the times at which other pods leave theirs."""
+"""PSA stays: zones for returning pods, chosen by the times at which other pods leave the zones."""
 
 from __future__ import annotations
 
@@ -59,14 +59,15 @@ class StaysParameters(StorageParameters, SearchParameters):
     """Parameters of PSA stays."""
 
     method: Literal["cp_sat", "highs", "greedy"] = "cp_sat"
-    """Solution method: `greedy` is a rule in which the stays that could lose most choose first.
-    CP-SAT, and HiGHS (to optimality), start from its solution."""
+    """Solution method: `greedy` is a rule in which the stays whose cost depends most on the zone
+    choose first. CP-SAT, and HiGHS (to optimality), start from its solution."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
     """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     gap: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.001
     """Relative gap between value and bound at which the search ends."""
     horizon_s: Positive = 900.0
-    """Horizon in seconds. Pods that stay longer are not modelled; they only occupy their places."""
+    """Horizon in seconds. Stored pods that stay longer are not modelled; they only occupy their
+    places."""
     zones: Annotated[int, pydantic.Field(ge=1)] = 8
     """Number of zones of places, by distance from the pick stations."""
 
@@ -74,10 +75,11 @@ class StaysParameters(StorageParameters, SearchParameters):
 class StaysControl(Ahead[StaysParameters]):
     """Assigns zones to pods by the times at which they and others will be fetched.
 
-    Every pod is assumed to be fetched after its expected stay, at the latest after the horizon:
-    stored pods then leave their zone, and returning pods need a place until then. An integer
-    program chooses the zones so that there is always room and robot time is least. Within its zone,
-    a pod takes the empty place nearest to its station.
+    A returning pod is assumed to be fetched after its expected stay, or after the horizon if that
+    is earlier. Stored pods whose expected stay is shorter than the horizon leave their zone after
+    it; the others only occupy their places. An integer program chooses the zones so that there is
+    always room and robot time is least. Within its zone, a pod takes the empty place nearest to its
+    station.
     """
 
     parameters_model = StaysParameters

@@ -32,7 +32,7 @@ NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class TaskParameters(BufferParameters):
-    """Parameters shared by these controllers."""
+    """Parameters shared by TA controllers with models."""
 
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
     """Maximum number of robots at, or on their way to, one station."""

@@ -76,8 +76,8 @@ class DispatchParameters(TaskParameters):
     bundle_value_s: NotNegative = 300.0
     """Value of bringing a pod to a replenishment station, in seconds of a robot's time."""
     service_s: NotNegative = 60.0
-    """Estimated service time of each pod at, or on its way to, a station; the next pod waits as
-    long."""
+    """Estimated service time, in seconds, of each pod at, or on its way to, a station; a further
+    pod waits for all of them."""
     late_weight: NotNegative = 0.02
     """Weight of a second of lateness of an order, in seconds of travel."""
     empty_battery_s: NotNegative = 0.0

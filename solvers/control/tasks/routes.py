@@ -126,9 +126,10 @@ class RoutesParameters(TaskParameters, SearchParameters):
     places_per_robot: Count = 6
     """Number of empty places considered for each pod to be stored, the nearest to its station."""
     places_per_task: Count = 3
-    """Number of empty places considered for each pod to be fetched, the nearest to it."""
+    """Number of empty places near each pod to be fetched that are considered for storing other
+    pods."""
     ways_per_pod: Count = 2
-    """Number of next tasks after each pod considered by CP-SAT."""
+    """Number of next tasks that CP-SAT considers after the storing of each pod."""
 
 
 class RoutesControl(Asking[RoutesParameters]):
@@ -141,7 +142,7 @@ class RoutesControl(Asking[RoutesParameters]):
     The plan is renewed whenever a robot needs a task.
 
     A pod whose station has more work for it stays there. The routes include pods and places, so PPS
-    and PSA must be dummies. Without an answer, pods go to the nearest empty place.
+    and PSA must be `dummy`. Without an answer, pods go to the nearest empty place.
     """
 
     parameters_model = RoutesParameters

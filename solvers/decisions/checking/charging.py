@@ -1,4 +1,4 @@
-"""Check of charging: stays of robots at places with energy."""
+"""Check of charging: stays of robots at charging and swap places."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the cost of new visits, less the worth of lines served and orders completed."""
+    """Return the cost of new visits, less the value of lines served and orders completed."""
     stations, orders = len(data["slots"]), len(data["order_station"])
     at, visit_of = values["order_station"].tolist(), values["line_visit"].tolist()
     within("order_station", at, -1, stations)

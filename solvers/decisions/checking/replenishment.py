@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the costs of trips and of bundles left out, less the worth of bundles stored."""
+    """Return the costs of trips and of bundles left out, less the value of bundles stored."""
     pod, station = values["pod"].tolist(), values["station"].tolist()
     within("pod", pod, -1, len(data["pod_space"]))
     within("station", station, -1, len(data["station_space"]))

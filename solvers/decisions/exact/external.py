@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision
 
 HIGHS = "highs"
-"""HiGHS as installed with rmfs, with its default settings but one thread."""
+"""HiGHS as installed with rmfs, on one thread, otherwise with its default settings."""
 
 COMMANDS = {
     "scip": 'scip -q -c "read {program}" -c "set limits time {seconds}" -c optimize '

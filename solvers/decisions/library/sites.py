@@ -64,4 +64,4 @@ TWICE: Mapping[str, Mapping[str, Any]] = {
     "backlog": {"scenario.demand.orders": 400, "scenario.replenishment.bundles": 1200},
     "arrivals": {"scenario.demand.orders_per_h": 3200, "scenario.demand.initial_orders": 400},
 }
-"""Parameters of a site twice as large."""
+"""Parameters of the demand at the size `double`, by kind of demand: twice those of `real`."""

@@ -67,7 +67,7 @@ class Outcome:
             The model's own objective function.
         build_s
             Seconds the model spent before the adapter was called; they are added to `build_s` and
-        `wall_s`.
+            `wall_s`.
 
         Returns
         -------

@@ -11,7 +11,8 @@ the place, the first slot b and the number n of slots. During its stay the robot
 
 :math:`end_r` and :math:`low_r` are the final and the lowest level of robot r, :math:`way_{rg}` is
 its drive back from a place of group g, :math:`slots_r` is its number of slots away from work,
-:math:`away_t` is the number of robots away in slot t, and R is the number of robots.
+:math:`away_t` is the number of robots away in slot t, and R is the number of robots. The other
+symbols are fields of `Charging`.
 
 Missing robot time is weighed against energy: :math:`lost(l) = worth\,(1 - l - \kappa (l - l^2))` is
 the robot time needed to fill a battery whose final level is l; :math:`\kappa` makes energy worth

@@ -67,7 +67,7 @@ class Candidates:
 
 @dataclass(frozen=True)
 class Pruning:
-    """How many candidates of each kind to keep; more candidates lose less and take longer.
+    """How many candidates of each kind to keep; more of them lose less, but take longer.
 
     Parameters
     ----------
@@ -75,8 +75,8 @@ class Pruning:
         Pods per wanted SKU and station. Default 4.
     orders_per_slot
         Orders (or lines, in variants where each line is placed by itself) per free slot of a
-        station. Default 64, which worsened the solution of one in twenty of 150 recorded inputs; 16
-        worsened half of the solutions, by 21 s of robot time on average.
+        station. Default 64, which worsened the solutions of one in twenty of the 150 recorded
+        inputs; 16 worsened those of half of them, by 21 s of robot time on average.
     stations_per_order
         Stations per order, if more stations have free slots; no order is left without a station.
         Default 4.
@@ -200,8 +200,8 @@ def call_price(data: PileOn) -> Floats:
 def whole_price(data: PileOn) -> Floats:
     """Minimum price of the pods that complete each order at a single station, shape (O,).
 
-    Stock left on pods under way costs nothing; any other line costs the lowest `call_price` of a
-    pod for it. Infinite if no pod serves some line.
+    A line costs nothing if stock left on pods under way covers it, and otherwise the lowest
+    `call_price` of a pod that holds its SKU. Infinite if there is no such pod for some line.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """The columns of the pile-on program: their costs, and their conversion into a decision.
 
 Columns exist only for candidate pairs for which the pods that may come can cover something. In
-`Variant.WHOLE` the column z of a line *is* that of its order, so each family of rows is written
-once for all variants.
+`Variant.WHOLE` the column z of a line *is* the column y of its order, so each family of rows is
+written once for all variants.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def add_columns(builder: ProgramBuilder, data: PileOn, candidates: Candidates) -
     data
         The input.
     candidates
-        The pairs to use.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
     """
     weights, variant = data.weights, data.variant
     whole = variant is Variant.WHOLE
@@ -215,7 +215,7 @@ def coverable_lines(data: PileOn, candidates: Candidates) -> Flags:
     data
         The input.
     candidates
-        The pairs to use.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
     """
     pods = np.flatnonzero(candidates.calls.any(axis=1))
     calls, stock = candidates.calls[pods], data.stock[pods]

@@ -28,7 +28,8 @@ def solve(
     data, limits, seed, start
         As for every method.
     candidates
-        The pairs to use. Default: all. With pruned pairs the bound is -inf.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
+        Default: all. If only some may be used, the bound is -inf.
     strengthen
         Whether to add the strengthening rows (8) of `program`. Default: yes.
 

@@ -1,12 +1,12 @@
-"""Pod match: the best call of all stations first.
+"""Pod match: repeatedly makes the pod call with the greatest gain over all stations.
 
 Orders are placed wherever stock already covers them. Then the pod (or the set of pods for one
 order) with the greatest gain over all stations is called, and its station is filled; this is
 repeated. *Prospects* are orders that get no slot but could be filled from the pods that come. When
-the slots are full, pods whose prospects are worth more than their call are called in the same way.
-Gains only decrease as orders and pods go to other stations, so a station is scored
-again only when it is at the top of the queue (lazy evaluation). Deterministic: ties go to the lower
-station and pod.
+the slots are full, pods whose prospects are worth more than their call costs are called in the same
+way. Gains only decrease as orders and pods go to other stations, so a station is scored again only
+when it is at the top of the queue (lazy evaluation). Deterministic: ties go to the lower station
+and pod.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ def solve(
     data, limits, seed, start
         As for every method; neither seed nor start is used.
     candidates
-        The pairs to use. Default: all.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
+        Default: all.
 
     Returns
     -------
@@ -84,9 +85,10 @@ def fill_slots(partial: PartialAssignment, most: int | None = None) -> None:
 
 
 def add_prospects(partial: PartialAssignment, most: int | None = None) -> None:
-    """Turn orders that leftover stock covers into prospects, then call pods for their prospects.
+    """Add prospects that leftover stock covers, then call pods for further prospects.
 
-    A pod is called if its prospects are worth more than the call.
+    A prospect is an order without a slot that the pods of a station could serve in full. A pod is
+    called if its prospects are worth more than the call costs.
 
     Parameters
     ----------

@@ -9,10 +9,10 @@ with d_rp from robot to pod and d_ps from pod to station; repeat until no call i
 single pod completes an order, `SETS` sets of pods are sampled, each covering a random order, and
 the best set is improved by `SEARCHES` local searches, each of which exchanges one pod; these are
 the paper's l1 = 10 and l2 = 3. Our choices where the paper leaves details open: stations are
-processed in ascending order of the travel of their inbound pods; orders are taken by worth, then
-by units. The paper does not consider shortages of orders already placed, and has no weights `unit`
-and `visit`; here each unit of shortage that a pod eases lowers K by `open_unit`, and both weights
-are counted.
+processed in ascending order of the travel of their inbound pods; orders with the greatest `worth`
+come first, then those with the fewest units. The paper does not consider shortages of orders
+already placed, and has no weights `unit` and `visit`; here each unit of shortage that a pod eases
+lowers K by `open_unit`, and both weights are counted.
 """
 
 from __future__ import annotations
@@ -56,7 +56,8 @@ def solve(
     data, limits, seed, start
         As for every method; the start is not used.
     candidates
-        The pairs to use. Default: all.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
+        Default: all.
 
     Returns
     -------

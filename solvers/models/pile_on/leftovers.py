@@ -25,7 +25,8 @@ def cover_rest(data: PileOn, values: Assignment) -> Assignment:
 
     Returns
     -------
-    A feasible decision that is at least as good; in variants without partial orders, the same one.
+    A feasible decision that is at least as good; in variants without partly covered orders, the
+    given one.
     """
     if data.variant not in (Variant.LATER, Variant.SPLIT_TIME, Variant.SPLIT_BOTH):
         return values

@@ -46,7 +46,8 @@ def solve(
         ``deterministic_s`` limits the work on all parts together, ``iterations`` the number of
         parts, and ``gap`` each part. Default: one deterministic second.
     candidates
-        The pairs to use. Default: all.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
+        Default: all.
 
     Returns
     -------
@@ -104,7 +105,7 @@ def solve(
 def station_groups(data: PileOn) -> list[Integers]:
     """Return the pairs of stations to decide together.
 
-    They are the neighbours in a ring of the stations that have free slots or shortages.
+    The stations that have free slots or shortages form a ring; two neighbours in it are a pair.
 
     Parameters
     ----------

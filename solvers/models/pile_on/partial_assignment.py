@@ -71,7 +71,7 @@ class PartialAssignment:
     data
         The input.
     candidates
-        The pairs to use.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
 
     Attributes
     ----------
@@ -117,7 +117,7 @@ class PartialAssignment:
         self.slots[station] -= 1
 
     def fill(self, station: int) -> None:
-        """Fill the slots with coverable orders, by most worth, then fewest units, then index.
+        """Fill slots with coverable orders: greatest `worth` first, then fewest units, then index.
 
         Small orders go first because they leave the most stock for the others.
         """
@@ -128,7 +128,11 @@ class PartialAssignment:
             self.place(int(self._rank[ready.argmax()]), station)
 
     def reserve(self, station: int) -> None:
-        """Turn the orders that the stock left covers into prospects, in the sequence of `fill`."""
+        """Choose prospects at a station, in the sequence of `fill`.
+
+        A *prospect* is an order without a slot that the remaining stock covers in full; its units
+        are taken from this stock.
+        """
         if not self.data.weights.prospects or not self.data.slots[station]:
             return
         while (ready := self.coverable(station)[self._rank]).any():
@@ -219,7 +223,7 @@ class PartialAssignment:
         return max(options, key=lambda call: call.gain, default=None)
 
     def best_prospect_call(self, station: int) -> Call | None:
-        """The best pod whose prospects at a station are worth more than its call.
+        """The best pod whose prospects at a station are worth more than its call costs.
 
         As constraint (5) of `program` demands, the pod must serve an order with a slot there. This
         is either an order already placed or one of the pod's prospects. The latter gets the slot of
@@ -239,7 +243,8 @@ class PartialAssignment:
     def settle_prospects(self, call: Call) -> None:
         """Add the prospects of a call.
 
-        If its pod serves no placed order, one of the prospects gets the slot of a placed order.
+        If its pod serves no placed order, one of the prospects gets the slot of a placed order. If
+        that is impossible, the call is taken back.
         """
         station, pods = call.station, np.array(call.pods)
         new = np.flatnonzero(self.prospect < 0)

@@ -1,7 +1,7 @@
 r"""A lower bound by Lagrangian relaxation, with prices for lines at stations; fast at every size.
 
 Only constraints (1), (3), (4), (7) and (8) of `program` are kept, and (8) is relaxed: a line l
-covered at station s pays :math:`\pi_{ls} \ge 0`, an eased unit of shortage earns
+covered at station s pays :math:`\pi_{ls} \ge 0`, each unit of shortage that is eased earns
 :math:`\sigma_{sk}`, and a pod at s earns the prices of what it could supply. With the symbols of
 `data`, for all prices
 

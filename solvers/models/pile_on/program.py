@@ -62,7 +62,7 @@ def formulate(
     data
         The input.
     candidates
-        The pairs to use.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
     strengthen
         Whether to add constraint (8). Default: yes.
     """
@@ -112,7 +112,8 @@ def solve_program(
     start
         A feasible decision to start from; None: the empty decision.
     candidates
-        The pairs to use, None for all. With a proper subset there is no bound (-inf).
+        The pairs of pod and station, order and station, and robot and pod that may be used; None:
+        all. With a proper subset there is no bound (-inf).
     strengthen
         Whether to add constraint (8).
 

@@ -1,9 +1,9 @@
 """Lower bounds on the pile-on models from the linear relaxation (cvxpy, Clarabel).
 
-This relaxes the strengthened program over all pairs; `safe_bound` computes the bound from the
-duals, rounded to the safe side. It suits small and medium sites. At a large site the interior-point
-factors fill in, and the bound that CP-SAT proves on the full program (`cp_sat.solve` without
-candidates) is as good and much faster to obtain; the benchmark compares them.
+This relaxes the program with constraint (8), over all pairs; `safe_bound` computes the bound from
+the duals, rounded to the safe side. The method suits small and medium sites. At a large site, the
+matrices that the interior-point method factorises do not stay sparse, and the bound that CP-SAT
+proves on the full program (`cp_sat.solve` without candidates) is as good and much faster to obtain.
 """
 
 from __future__ import annotations

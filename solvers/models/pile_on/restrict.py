@@ -52,12 +52,14 @@ class Compact:
 def compact(data: PileOn, candidates: Candidates) -> Compact:
     """Keep the wanted SKUs, and the pods that may be called, are inbound or are bound to a robot.
 
+    A SKU is wanted if there is an order line or a shortage of it.
+
     Parameters
     ----------
     data
         The input.
     candidates
-        The pairs to use.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
     """
     kept = candidates.calls.any(axis=1) | (data.inbound >= 0)
     bound = np.zeros(0, dtype=np.int64) if data.robot_pod is None else data.robot_pod
@@ -165,15 +167,15 @@ def part(
     An order that also has a slot at another station stays as it is: its slots at the freed stations
     remain taken, its lines there become open demand, and a pod called there stays called if it
     holds a SKU of such a line. Prospects of a freed station also stay as they are if such orders
-    take all its slots. `merge` may then leave such a line without stock (at the price of open
-    demand), which `violations` reports.
+    take all its slots. As open demand need not be covered, a decision that `merge` returns may
+    leave such a line without stock; `violations` reports this.
 
     Parameters
     ----------
     data
         The input.
     candidates
-        The pairs to use.
+        The pairs of pod and station, order and station, and robot and pod that may be used.
     values
         A feasible decision that uses candidate pairs only.
     stations

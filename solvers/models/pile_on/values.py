@@ -1,9 +1,10 @@
 r"""A decision, its cost, and its feasibility.
 
-The objective uses x: pod called to station; b: robot fetches pod; t, f: travel costs of both;
-C_s, n_s: slots free before the decision, and those taken; v: units of open demand left uncovered;
-c_o: order covered in full, or a prospect; q_o: units of the order; z_l: line covered; and m_o:
-number of slots that the order takes:
+The objective uses x: pod called to station; t: travel cost of this call; b: robot fetches pod;
+f: travel cost of the robot; C_s: slots free before the decision; n_s: slots that the decision
+takes; v: units of open demand left uncovered; c_o: order covered in full, or a prospect; q_o: units
+of the order; z_l: line covered; worth_o: extra reward for giving the order a slot; and m_o: number
+of slots that the order takes. The other names are those of `Weights`:
 
 .. math::
 

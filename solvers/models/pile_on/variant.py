@@ -57,15 +57,17 @@ class Weights:
     complete
         Reward per order that the pods assigned to its station cover in full. Default 40.
     unit
-        Reward per unit of such an order, so that large orders count for more. Default 0.
+        Reward per unit of an order that is covered in full, so that large orders count for more.
+        Default 0.
     prospects
         Whether `complete` and `unit` also reward orders that get no slot but could be filled from
         the pods that come (as in M1G), because such pods suit the next decision. Default yes.
     open_unit
-        Penalty per unit of demand of orders already at a station that no pod covers. Default 1000.
+        Penalty per unit of open demand (of orders already at a station) that no pod covers. Default
+        1000.
     open_line
-        Penalty per line of a newly placed order that is not covered now (`Variant.LATER`). Default
-        100.
+        Penalty per line of a newly placed order if the line is not covered now (`Variant.LATER`).
+        Default 100.
     line
         Reward per line covered, whatever its order. Default 0.
     part

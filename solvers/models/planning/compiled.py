@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Found(NamedTuple):
-    """A plan, its worth (minus the objective), and the work spent."""
+    """A plan, its value (the objective with the opposite sign), and the work spent."""
 
     plan: Plan
     value: float

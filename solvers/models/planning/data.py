@@ -14,7 +14,7 @@ Integers = NDArray[np.int64]
 Reals = NDArray[np.float64]
 
 MOST_VISITS = 64
-"""Maximum number of visits of a station, as they are stored as bits of one number."""
+"""Maximum number of visits per station: a set of visits is stored as the bits of one number."""
 
 
 @dataclass(frozen=True)
@@ -25,9 +25,9 @@ class Planning:
     the order in which they arrive. New visits follow; each pod makes at most one new visit. Visits
     of a station are counted from 0, those of pods under way included.
 
-    A line is served by one visit. An order occupies a slot from its first visit to its last.
-    Between visits a station keeps one slot free, so that orders served by a single visit can pass
-    through it one after the other.
+    A line is served by one visit. An order occupies a slot from its first visit to its last, at
+    which it *closes*. Between visits a station keeps one slot free, so that orders served by a
+    single visit can pass through it one after the other.
 
     Parameters
     ----------
@@ -40,19 +40,21 @@ class Planning:
     order_station
         Station at which an order is open, or -1 if it waits, shape (O,).
     order_until
-        Last visit under way that carries units for an open order, or -1, shape (O,).
+        Last visit of a pod under way that carries units for an open order, or -1, shape (O,).
     order_worth
-        Worth of closing an order in addition to that of its lines, shape (O,), in s of robot time.
+        Reward for closing an order, in addition to the rewards for its lines, shape (O,), in s of
+        robot time.
     line_order, line_sku, line_units
         Order, SKU and units of each line to be planned, shape (L,). A waiting order has at least
         one line.
     line_worth
-        Worth of serving a line, shape (L,), in s of robot time.
+        Reward for serving a line, shape (L,), in s of robot time.
     stock
         Unreserved units per pod and SKU, shape (P, K).
     cost
-        Robot time of a new visit without its service, less the value of keeping the station busy,
-        shape (P, S), in s; inf forbids the visit and is required for pods under way.
+        Robot time of a new visit, excluding the service at the station, less the value of keeping
+        the station busy, shape (P, S), in s; inf forbids the visit and is required for pods under
+        way.
     visits
         Maximum number of new visits per station.
     decay
@@ -169,7 +171,7 @@ class Planning:
         """Number of orders that each station may keep open from one visit to the next.
 
         This is the number of its slots minus one, or, if that is more, the number of its open
-        orders that have lines to plan or get units from a visit under way after the first.
+        orders that have lines to plan or get units from the second or a later pod under way.
         """
         stays = self.order_until > 0
         stays[self.line_order] = True

@@ -24,14 +24,14 @@ def solve(
     pods: Sequence[Sequence[int]] = (),
     bound_steps: int = 0,
 ) -> Solution[Plan]:
-    """Plan by branch and bound; `nodes` and `gap` apply.
+    """Plan by branch and bound; of the limits, `nodes` and `gap` apply.
 
     Parameters
     ----------
     data
         The problem.
     limits
-        Limits of the solver. Default: to optimality.
+        Limits of the solver. Default: none, so that the plan is optimal.
     seed
         Seed of the solver. Default 0.
     start, pods

@@ -3,8 +3,8 @@
 Each step replaces, moves or adds a visit of a station, swaps visits of two stations, or
 redistributes what two stations serve. A new pod is the best, by a quick estimate, of a few pods
 drawn from those that could serve something. Slightly worse plans are accepted at first (threshold
-accepting, Dueck and Scheuer 1990). Lines served at other stations stay there, so the time of a step
-does not depend on the number of stations. The steps are compiled: `rmfs/traffic/src/visits`.
+accepting, Dueck and Scheuer 1990). A step changes the lines of one or two stations only, so its
+time does not depend on the number of stations. The steps are compiled: `rmfs/traffic/src/visits`.
 """
 
 from __future__ import annotations

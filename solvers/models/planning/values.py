@@ -44,7 +44,7 @@ def nothing(data: Planning) -> Plan:
 
 
 def objective(data: Planning, plan: Plan) -> float:
-    """Return the cost of new visits less the worth of lines served and orders closed, in s."""
+    """Return the cost of new visits less the rewards for lines served and orders closed, in s."""
     total = 0.0
     for station, pods in enumerate(plan.pods):
         first = len(data.under_way[station])

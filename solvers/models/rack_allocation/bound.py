@@ -1,4 +1,4 @@
-"""A bound in whole pods for every back end, from the relaxation over all stations together."""
+"""A bound in whole pods for every back end, from a relaxation that aggregates all stations."""
 
 from __future__ import annotations
 

@@ -17,6 +17,9 @@ def solve(
     seed: int = 0,
     start: Allocation | None = None,
 ) -> Solution[Allocation]:
-    """Find the fewest pods by constraint programming; `deterministic_s` and `gap` apply."""
+    """Find the fewest pods by constraint programming.
+
+    Of the limits, `deterministic_s` and `gap` apply.
+    """
     # presolving takes longer than it saves, and is hardly counted as work
     return solve_in_whole_pods(partial(cp_sat.solve, presolve=False), data, limits, seed, start)

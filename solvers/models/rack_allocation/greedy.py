@@ -1,4 +1,4 @@
-"""Fill station after station, each time with the pod that completes the most orders."""
+"""Fill the stations one after another, always adding the pod that completes the most orders."""
 
 from __future__ import annotations
 
@@ -28,9 +28,10 @@ def solve(
 ) -> Solution[Allocation]:
     """Fill stations one after another, the one with the most slots first.
 
-    A station gets the pod that completes the most further orders, together with these orders, those
-    with the fewest units first. If no pod completes an order, the station gets the pod that adds
-    the most missing lines. Pods that turn out to be unnecessary are released.
+    Until its slots are filled, a station gets the pod that completes the most of the remaining
+    orders, and these orders with it, those with the fewest units first. If no pod completes an
+    order, the station gets the pod that adds the most missing lines. Pods that turn out to be
+    unnecessary are released.
 
     Returns
     -------

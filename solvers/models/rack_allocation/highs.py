@@ -15,5 +15,5 @@ def solve(
     seed: int = 0,
     start: Allocation | None = None,
 ) -> Solution[Allocation]:
-    """Find the fewest pods by branch and bound; `nodes` and `gap` apply."""
+    """Find the fewest pods by branch and bound; of the limits, `nodes` and `gap` apply."""
     return solve_in_whole_pods(highs.solve, data, limits, seed, start)

@@ -75,8 +75,8 @@ def together(data: RackAllocation) -> LinearProgram:
     """Formulate the program aggregated over the stations, a relaxation with few columns.
 
     Each SKU has one d (see the module), the largest of all stations, so that each row is implied by
-    the sum of the rows it replaces. If all stations have equally many slots, the linear relaxations
-    of this program and that of `formulate` have the same value.
+    the sum of the rows it replaces. If all stations have equally many slots, the linear relaxation
+    of this program has the same value as that of the program from `formulate`.
 
     Parameters
     ----------

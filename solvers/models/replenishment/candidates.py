@@ -13,9 +13,9 @@ from rmfs.solvers.models.replenishment.data import Replenishment
 def best_pods(data: Replenishment, *, pods: int, stations: int) -> Replenishment:
     """Keep the best pods of every bundle and the nearest stations of every pod.
 
-    A pod is rated by the worth of the bundle in it minus a share of the cost of its shortest trip.
-    This share is the cost divided by the number of bundles of average size that fit into the pod. A
-    bundle that only a few pods can store keeps all of them.
+    A pod is rated by the worth of storing the bundle in it minus a share of the cost of its
+    shortest trip. This share is the cost divided by the number of bundles of average size that fit
+    into the pod. A bundle that only a few pods can store keeps all of them.
 
     Parameters
     ----------

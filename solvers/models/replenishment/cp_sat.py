@@ -16,9 +16,9 @@ def solve(
     seed: int = 0,
     start: Stocking | None = None,
 ) -> Solution[Stocking]:
-    """Choose pods and stations by constraint programming; `deterministic_s` and `gap` apply.
+    """Choose pods and stations by constraint programming.
 
-    The bound is at least that of the relaxation.
+    Of the limits, `deterministic_s` and `gap` apply. The bound is at least that of the relaxation.
     """
     backend = with_relaxed_bound(cp_sat.solve)
     return solve_by(backend, lambda: formulate(data, whole=True), limits, seed=seed, start=start)

@@ -8,8 +8,8 @@ Every bundle b goes to one pod p or is left, :math:`\sum_p x_{bp} + l_b = 1`. A 
 bundle is brought to one station s, :math:`x_{bp} \le \sum_s y_{ps} \le 1`. The bundles of a pod fit
 into it, and all bundles brought to a station fit into its buffer. The worth of a bundle in a pod is
 the robot time that it will save (`bundle_worth_s`), so cost and worth are both in seconds, and a
-trip is made if its bundles save more than it costs. The bundles of one batch are rated one by one;
-the mutual benefit of two new bundles in the same pod is not counted.
+trip is made if its bundles save more than it costs. The waiting bundles are rated one by one; the
+mutual benefit of two new bundles in the same pod is not counted.
 """
 
 from __future__ import annotations

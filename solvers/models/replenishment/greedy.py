@@ -27,11 +27,11 @@ def solve(
     seed: int = 0,
     start: Stocking | None = None,
 ) -> Solution[Stocking]:
-    """Repeatedly bring the pod with the greatest gain, with its best bundles by gain per space.
+    """Repeatedly bring the pod with the greatest gain, with the bundles that gain most per space.
 
     As bundles and space only decrease, a gain computed earlier is an upper bound, so only the pods
-    at the top of a heap are rated again. Their initial rating is the gain if bundles could be
-    divided. Bundles that must be stored count as a large gain.
+    at the top of a heap are rated again. The initial rating of a pod is the gain that it would have
+    if bundles could be divided. Bundles that must be stored count as a large gain.
 
     Returns
     -------
@@ -64,7 +64,7 @@ class Filling:
     Attributes
     ----------
     scored
-        Number of candidates scored so far.
+        Number of pairs of bundle and pod scored so far.
     """
 
     def __init__(self, data: Replenishment) -> None:

@@ -16,9 +16,9 @@ def solve(
     seed: int = 0,
     start: Stocking | None = None,
 ) -> Solution[Stocking]:
-    """Choose pods and stations by branch and bound; `nodes` and `gap` apply.
+    """Choose pods and stations by branch and bound.
 
-    The bound is at least that of the relaxation.
+    Of the limits, `nodes` and `gap` apply. The bound is at least that of the relaxation.
     """
     backend = with_relaxed_bound(highs.solve)
     return solve_by(backend, lambda: formulate(data, whole=False), limits, seed=seed, start=start)

@@ -24,7 +24,7 @@ def polished(data: Replenishment, stocking: Stocking) -> Stocking:
 
     Returns
     -------
-    A stocking that costs no more and stores no fewer bundles that must be stored.
+    A stocking that costs no more and stores at least as many of the bundles that must be stored.
     """
     moves = _Moves(data, stocking)
     while moves.move_bundles() or moves.drop_pods():

@@ -8,7 +8,7 @@ Bundles go to pods (x), pods to stations (y); the load w of a pod counts at its 
     \sum_b space_b\, x_{bp} \le \sum_s w_{ps}, \\
     w_{ps} \le podspace_p\, y_{ps}, \quad \sum_p w_{ps} \le stationspace_s
 
-Splitting x by stations instead would be equivalent but multiply the columns by the number of
+Splitting x by stations instead would be equivalent but would multiply the columns by the number of
 stations. Spaces are counted in parts of a unit, so all numbers except the costs are integers.
 """
 
@@ -51,7 +51,7 @@ class Columns:
 
     @classmethod
     def of(cls, data: Replenishment) -> Columns:
-        """List the allowed pairs.
+        """List the columns of the allowed pairs.
 
         Parameters
         ----------

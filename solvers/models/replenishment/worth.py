@@ -2,10 +2,11 @@ r"""The worth of a bundle in a pod: the robot time that its units save by raisin
 
 On each visit, a pod can serve the demand for its SKUs that has accumulated. Let :math:`D_k`, the
 demand for SKU k on a visit, be Poisson with mean :math:`\mu_k`. A pod with q units of k serves
-:math:`g_k(q) = E[\min(q, D_k)]` of them, so u more units add the *coverage* :math:`g_k(q + u) -
-g_k(q)`, which is large if the SKU is in demand and scarce, and small if it is plentiful. With each
-line of SKU k, :math:`a_{kh}` lines of SKU h are ordered on average (*affinity*); if the pod holds h
-too, these need no separate visit. Each additional unit served saves its share of a visit:
+:math:`g_k(q) = E[\min(q, D_k)]` of the units demanded, so u more units add the *coverage*
+:math:`g_k(q + u) - g_k(q)`, which is large if the SKU is in demand and scarce, and small if it is
+plentiful. With each line of SKU k, :math:`a_{kh}` lines of SKU h are ordered on average
+(*affinity*); if the pod holds h too, these lines need no separate visit. Each additional unit
+served saves its share of a visit:
 
 .. math::
 

@@ -65,7 +65,7 @@ class PickStations:
     def cadence_s(self) -> NDArray[np.float64]:
         """Least time between two picks from the same pod, shape (S,), in s.
 
-        This is the longer of transfer and pick.
+        This is the longer of `unit_transfer_s` and `unit_pick_s`.
         """
         return np.maximum(self.unit_transfer_s, self.unit_pick_s)
 
@@ -154,7 +154,7 @@ class Orders:
         Maximum number of units in an order; infinity if unknown. Default: unknown.
     lone_units
         Maximum number of units of orders that are served whole from one visit. If the demand is
-        known, these are the units of the orders all of whose SKUs are on a single pod. Default:
+        known, these are the units of those orders whose SKUs are all on a single pod. Default:
         unlimited.
     join_visits
         Whether an order assigned to the station while a pod is served there can still be served
@@ -238,7 +238,10 @@ class RunBound:
 
     @property
     def end_effect_s(self) -> float:
-        """Maximum time per robot outside the window, in s: a drive in, a service, a drive out."""
+        """Maximum time per robot that its counted visits take outside the window, in s.
+
+        This is a drive in, a service and a drive out.
+        """
         inbound = np.concatenate([self.picking.inbound_s, self.refill.inbound_s])
         outbound = np.concatenate(
             [

@@ -38,7 +38,7 @@ def visit_legs(
     between_s: NDArray[np.float64],
     transfer_s: float,
 ) -> Legs:
-    """Compute the drives charged to a visit of each station, in the common numbering.
+    """Compute the drives charged to a visit of each station; arrays begin with the pick stations.
 
     Parameters
     ----------

@@ -102,7 +102,7 @@ def program(data: RunBound) -> tuple[LinearProgram, Columns]:
 
     Returns
     -------
-    The program, which minimises minus the number of units, and its columns.
+    The program, which minimises the negative of the number of units, and its columns.
     """
     builder = ProgramBuilder()
     columns = _columns(builder, data)

@@ -15,9 +15,10 @@ def single_bounds(data: RunBound) -> dict[str, float]:
     With the symbols of `program`, the bounds on the units picked in the window are
 
     - ``stations``: stations never wait for a pod, :math:`\sum_s (H / a_s + 1)`;
-    - ``robots``: all visits go to the station with the best ratio, with the largest possible
-      pile-on :math:`u_s`: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`, or
-      :math:`w_s + \pi_s` per unit if that is less;
+    - ``robots``: all visits go to the station with the least robot time per unit, with the largest
+      possible pile-on :math:`u_s`: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`;
+      where visits for a single unit take less time per unit, their time :math:`w_s + \pi_s` is used
+      instead;
     - ``demand``: the units ordered.
 
     Parameters

@@ -3,9 +3,9 @@
 In each step every kept partial plan is extended by a visit of every pod, and the best few plans are
 kept. The orders that a pod would serve in part are opened while slots are free, those missing the
 fewest SKUs first. A second branch opens only orders of which the pod serves at least half of the
-missing SKUs. Plans are ranked by the number of SKUs that all orders still miss; SKUs of open orders
-count twice, as an open order holds a slot. All plans of a step are scored together, by one matrix
-product. Deterministic: ties go to the plan kept earlier, then the lower pod.
+missing SKUs. Plans are ranked by the number of SKUs that their orders still miss in total; SKUs of
+open orders count twice, as an open order holds a slot. All plans of a step are scored together, by
+one matrix product. Deterministic: ties go to the plan kept earlier, then to the lower pod.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def search(data: Sequencing, width: int) -> tuple[VisitSequence, int]:
     Parameters
     ----------
     data
-        The input; feasible.
+        The input, which must be feasible.
     width
         Number of partial plans kept per visit, at least 1.
 

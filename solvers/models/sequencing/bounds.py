@@ -22,7 +22,7 @@ def covering(data: Sequencing) -> LinearProgram:
     Parameters
     ----------
     data
-        The input; feasible.
+        The input, which must be feasible.
     """
     builder = ProgramBuilder()
     pods = builder.columns(data.pods, cost=1.0)

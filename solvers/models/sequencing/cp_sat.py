@@ -24,7 +24,7 @@ def solve(
     seed: int = 0,
     start: VisitSequence | None = None,
 ) -> Solution[VisitSequence]:
-    """Find a plan with the fewest visits; `deterministic_s` and `gap` apply.
+    """Find a plan with the fewest visits; of the limits, `deterministic_s` and `gap` apply.
 
     The search starts from the plan of the beam search unless another start is given.
     """

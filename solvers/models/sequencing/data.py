@@ -2,8 +2,8 @@ r"""Rack sequencing at one pick station: the problem, a plan, and its rules.
 
 Orders are processed with at most C of them open at a time, pods visit the station one after the
 other, and an open order takes from a visiting pod every SKU it still misses. The number of visits
-is minimised (Boysen, Briskorn, Emde 2017, mobile robot order picking); consecutive visits of the
-same pod count once, and the stock of a pod suffices for all orders at the station.
+is minimised (the mobile robot order picking problem of Boysen, Briskorn, Emde 2017); consecutive
+visits of the same pod count once, and the stock of a pod suffices for all orders at the station.
 
 A visit has three steps. First, open orders are served, and those now complete leave (set B). Then
 orders that this pod completes alone come and go one after the other, each occupying a slot for a

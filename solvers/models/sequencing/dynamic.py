@@ -49,7 +49,7 @@ def solve(
 
     Returns
     -------
-    The plan; its status is LIMIT, without values, if the limit is reached and there is no start.
+    The plan. If the limit is reached and there is no start, the status is LIMIT, without values.
     """
     began = time.perf_counter()
     if not data.feasible:

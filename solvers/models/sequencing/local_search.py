@@ -1,7 +1,7 @@
 """Local search on the sequence of visits: remove a visit, then repair the plan.
 
 For a given sequence of visits, `still_open` decides when to open which order, as in interval
-scheduling: of the orders that would lose by waiting, it opens those that end first. The search
+scheduling: of the orders that waiting would delay, it opens those that end first. The search
 removes a visit, then tries random moves (exchange two visits, move a visit, or replace a pod) and
 keeps those that do not increase the number of incomplete orders. When every order is complete, the
 plan is one visit shorter, and the next visit is removed.

@@ -119,7 +119,7 @@ def formulate(data: Sequencing, visits: int, least: int) -> Formulation[VisitSeq
     Parameters
     ----------
     data
-        The input; feasible.
+        The input, which must be feasible.
     visits
         The horizon T.
     least

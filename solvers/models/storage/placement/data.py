@@ -31,7 +31,7 @@ class Placement:
         Robot time from where each pod is now to each place, set-down included, shape (P, L), in s;
         +inf where a pod may not be stored.
     access_s
-        Robot time between each place and the stations that a future visit takes, both ways, shape
+        Robot time that a future visit takes between each place and the stations, both ways, shape
         (L,), in s.
     visits
         Expected visits of each pod before it is moved again, shape (P,); see `expected_visits`.

@@ -19,7 +19,7 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Let each pod take the cheapest remaining place, most visited pods first.
+    """Let the pods, in descending order of expected visits, take the cheapest remaining place each.
 
     For the bound, every pod takes its cheapest place, even if others take it too.
 

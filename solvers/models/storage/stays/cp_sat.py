@@ -19,7 +19,10 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the zone of each stay by constraint programming; `deterministic_s` and `gap` apply."""
+    """Find the zone of each stay by constraint programming.
+
+    Of the limits, `deterministic_s` and `gap` apply.
+    """
     return solve_by(
         cp_sat.solve, lambda: formulate(data, whole=True), limits, seed=seed, start=start
     )

@@ -5,7 +5,8 @@ along the periods as units of flow: a unit either waits from one period to the n
 arc of a stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. As the stays present in period t that
 are not in zone 0 must fit into zone 1, at most :math:`k_0 - (present_t - k_1)^+` units may wait in
 period t. (This is the k-colouring of intervals by flow of Carlisle and Lloyd 1995, with a limit on
-waiting.) A stay that must be in zone 0 takes its unit out of the flow and puts it back.
+waiting.) A stay that must be in zone 0 takes a unit out of the flow when it begins and puts it back
+when it ends.
 """
 
 from __future__ import annotations

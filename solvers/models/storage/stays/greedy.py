@@ -25,10 +25,10 @@ def solve(
 ) -> Solution[NDArray[np.int64]]:
     """Give each stay the cheapest zone that has room during the whole stay.
 
-    Stays with the largest cost difference between zones per hour choose first, as many short stays
-    make better use of a good place than one long stay. If that leaves a stay without a zone, stays
-    choose again in the order in which they begin. This second sequence fails only if some zones are
-    not allowed or there are too few places for any choice.
+    Stays with the largest cost difference between zones, per hour of the stay, choose first,
+    because a good place is better used by several short stays than by a long one. If that leaves a
+    stay without a zone, stays choose again in the order in which they begin. This second sequence
+    fails only if some zones are not allowed or there are too few places for any choice.
 
     Returns
     -------

@@ -25,8 +25,8 @@ from rmfs.solvers.models.storage.zones.prices import price_bound
 from rmfs.solvers.models.storage.zones.repair import repaired
 
 EXACT = 1e-6
-"""Gap at which an interior-point solution counts as optimal, relative to the objective or, if that
-is below 1 s/h, absolute."""
+"""Gap at which an interior-point solution counts as optimal, relative to the objective or, if the
+objective is below 1 s/h, in s/h."""
 
 _SIZES_KEPT = 8
 

@@ -21,9 +21,9 @@ def solve(
 ) -> Solution[ZonePlan]:
     """Place classes in portions, most visited first, each portion where a visit takes least time.
 
-    The time includes the delay that one more visit causes itself and others. The price of a zone is
-    the least that a pod there saves compared with the best zone that still has room; 0 if no zone
-    has room.
+    The time includes the delay that one more visit causes to itself and to other visits. The price
+    of a zone is the least that a pod there saves compared with the best zone that still has room; 0
+    if no zone has room.
 
     Returns
     -------

@@ -10,7 +10,8 @@ more visit causes at the traffic :math:`f_j`. As :math:`\gamma f^2 \ge \gamma f_
     u_i = \min_j r_i (t_{ij} + d_j) + p_j
 
 At the optimum it is equal to the robot time. :math:`u_i` is the hourly cost of a pod of class i in
-its best zone, its *worth* in the rule. The rule rates the stay of a pod at a place by
+its best zone; the rule calls it the *worth* of the pod. The rule rates the stay of a pod at a place
+by
 
 .. math::
 
@@ -32,7 +33,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.storage.zones.data import ZonePlan, Zones, traffic_per_h
 
 _TINY = 2.0**-46
-"""Upper bound on the relative rounding error of the dual value, of a few thousand operations."""
+"""Upper bound on the relative rounding error of the dual value after a few thousand operations."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Prices:
     place_per_h
         Price of a place in each zone, shape (J,), in s/h.
     delay_s
-        Delay that one more visit to each zone causes itself and others, shape (J,), in s.
+        Delay that one more visit to each zone causes to itself and other visits, shape (J,), in s.
     worth_per_h
         Cost of a pod of each class in its best zone, shape (I,), in s/h.
     """
@@ -121,7 +122,8 @@ def place_values(
 ) -> NDArray[np.float64]:
     """Rate places for pods: travel, delay, and price of the place minus worth of the pod.
 
-    Price and worth are rates per hour and are multiplied by the expected stay.
+    The worth of a pod is its cost in its best zone. Price and worth are rates per hour and are
+    multiplied by the expected stay.
 
     Parameters
     ----------

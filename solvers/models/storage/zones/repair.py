@@ -9,7 +9,7 @@ from rmfs.solvers.models.storage.zones.data import Zones
 
 
 def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Turn an almost feasible table into an exactly feasible one.
+    """Turn an almost feasible table of pods per class and zone into an exactly feasible one.
 
     Negative numbers become 0, rows are scaled to the number of pods, and excess pods of a zone are
     moved to zones with room, lowest index first.

@@ -10,7 +10,7 @@ where :math:`x_{rt}` is 1 if robot r does task t, w is the weight of lateness, a
 room_s` is the number of robots sent to station s. The k-th of them finds :math:`queue_s + k - 1`
 pods before it, so each further robot sent to the same station costs more, which balances the
 stations. The waiting time is an estimate for the whole group and does not affect the lateness, so
-the cost of a pair is fixed.
+the cost of a pair of robot and task is fixed.
 """
 
 from __future__ import annotations

@@ -4,7 +4,8 @@ Each robot sends one unit: to a task and on to its station, or directly to the s
 station s to the sink there are arcs of capacity 1 with costs :math:`(queue_s + k - 1) service_s`,
 :math:`k = 1, 2, \dots`; as the costs increase, the cheapest arcs are used first and add up to the
 waiting time. The cost of leaving a task is charged in advance and refunded on the arc from the task
-to its station. A task that must be done absorbs its unit, and its station sends another.
+to its station. A task that must be done absorbs the unit that it gets, and its station supplies
+another unit.
 """
 
 from __future__ import annotations

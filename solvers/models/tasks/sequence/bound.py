@@ -1,8 +1,8 @@
 r"""A bound that relaxes routes to pairs: every task needs a predecessor.
 
-The relaxation ignores that places are used once, that chains must begin at a robot, and all times
-except the earliest ones. An assignment problem remains: task t follows robot r or task o, or is
-left. With :math:`s_o = \min_l store_{ol}`, following o costs
+The relaxation ignores that each place is used at most once, that chains of tasks must begin at a
+robot, and all times except the earliest ones. An assignment problem remains: task t follows robot r
+or task o, or is left. With :math:`s_o = \min_l store_{ol}`, following o costs
 
 .. math::
 

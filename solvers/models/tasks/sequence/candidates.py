@@ -12,7 +12,9 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, TaskSequence
 
 @dataclass(frozen=True)
 class Ways:
-    """Arcs that routes may use. An *owner* of a pod is robot r, or task R + t.
+    """Arcs that routes may use.
+
+    The *owner* of a pod is a robot or a task: robot r has the number r, task t the number R + t.
 
     Attributes
     ----------
@@ -52,8 +54,8 @@ def every_way(data: TaskSequence) -> Ways:
 def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> Ways:
     """Return the shortest arcs, together with those of a plan, which thus remains feasible.
 
-    For each owner, the nearest tasks via the best place are included, and for each task the nearest
-    owners, each via the best places. A route may end at the nearest places.
+    For each owner, the tasks nearest via the best place are included, and for each task the owners
+    nearest to it, each over the best places. A route may end at the nearest places.
 
     Parameters
     ----------
@@ -62,8 +64,8 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
     keep
         A plan.
     tasks
-        Number of tasks kept after each owner and each robot, and of owners and robots kept before
-        each task.
+        Number of tasks kept after each owner and each robot without a pod, and of such owners and
+        robots kept before each task.
     places
         Number of places kept for each pair of owner and task, and for the end of each route.
 

@@ -75,8 +75,8 @@ def solve(
     data
         The problem.
     limits
-        `deterministic_s` and `gap` apply. Default: to optimality, unless too many routes are within
-        the last gap.
+        `deterministic_s` and `gap` apply. Default: none; the routes are then optimal unless too
+        many routes are within the last gap.
     seed
         Seed of HiGHS. Default 0.
     start

@@ -44,7 +44,7 @@ def solve(
     data
         The problem.
     limits
-        `deterministic_s` and `gap` apply. Default: to optimality.
+        `deterministic_s` and `gap` apply. Default: none; the solver then runs to optimality.
     seed
         Seed of the solver. Default 0.
     start
@@ -56,8 +56,8 @@ def solve(
     -------
     The routes, never worse than the start. The bound is valid for all arcs: it is that of
     `relaxed_bound`, or the solver's if that is better and all arcs were considered. With fewer
-    arcs, the best routes are FEASIBLE unless the bound proves them optimal, and the status is LIMIT
-    if there are none.
+    arcs, the status is OPTIMAL only if the bound proves the routes optimal, otherwise FEASIBLE, or
+    LIMIT if there are no routes.
 
     Raises
     ------

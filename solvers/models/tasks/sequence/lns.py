@@ -4,8 +4,8 @@ A step takes a few tasks out of the routes. Then these tasks, and the tasks that
 are inserted in random order, each where it adds the least cost (a few positions are skipped at
 random). Other steps choose new places for some pods. Slightly worse routes are accepted at first
 (threshold accepting, Dueck and Scheuer 1990). Without a start, tasks are inserted by urgency into
-two plans: empty routes, and routes of one task each found by assignment. The search starts from the
-better result. The steps are compiled: `rmfs/traffic/src/sequences`.
+two plans: empty routes, and routes of one task each, found by assignment. The search starts from
+the better result. The steps are compiled: `rmfs/traffic/src/sequences`.
 """
 
 from __future__ import annotations

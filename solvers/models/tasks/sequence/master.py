@@ -36,7 +36,7 @@ class Relaxed(NamedTuple):
     Attributes
     ----------
     robot, task, place
-        Duals of the rows, in ticks.
+        Duals of the rows of robots, tasks and places, in ticks.
     used
         Value of each route in the relaxation, from 0 to 1.
     iterations

@@ -32,7 +32,7 @@ PARTS = 1024
 """Number of parts per tick, the unit of prices and costs."""
 
 LABEL_ENTRIES = 2000
-"""Entries counted per partial route, in addition to the ways that continue it."""
+"""Table entries counted as work per partial route, in addition to one per way to continue it."""
 
 _NEVER = NEVER * PARTS
 _STEPS = 100
@@ -63,7 +63,7 @@ class Found(NamedTuple):
     Attributes
     ----------
     bound
-        Lower bound on the cost of every route of the robot, in parts.
+        Lower bound on the cost of every route of the robot, in parts of a tick.
     routes
         Routes below the requested cost, the cheapest first.
     complete
@@ -273,7 +273,7 @@ class Pricing:
         robot
             Index of the robot.
         below
-            Upper limit of the cost of a route, in parts.
+            Upper limit of the cost of a route, in parts of a tick.
         most
             Number of routes after which the search ends.
         labels

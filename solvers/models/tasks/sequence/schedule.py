@@ -26,7 +26,7 @@ def approach_s(data: TaskSequence, robot: int, place: int, task: int) -> float:
     robot
         The robot.
     place
-        Place where it stored its last pod, or `NONE` if it starts from its initial position.
+        Place where the robot stored its last pod, or `NONE` if it starts from its initial position.
     task
         The task.
     """
@@ -49,7 +49,7 @@ def follow(
     place
         Place where the pod of each task is stored, shape (T,).
     stowed
-        Place where the pod that it initially carries is stored, or `NONE`.
+        Place where the pod that the robot initially carries is stored, or `NONE` without one.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, TaskS
 
 
 def without_tasks(data: TaskSequence) -> Routes | None:
-    """Return the routes that only store the pods that robots carry, at the least driving.
+    """Return the routes that only store the pods that robots carry, with the least driving.
 
     Parameters
     ----------
@@ -30,8 +30,8 @@ def without_tasks(data: TaskSequence) -> Routes | None:
 def first_tasks(data: TaskSequence) -> Routes | None:
     """Give each robot at most one task, at the least cost of driving, lateness and tasks left.
 
-    At first, every pod is assumed to be stored at its best place, even if others are, too. Places
-    are then assigned at the least driving.
+    At first, every pod is assumed to be stored at its best place, even if other pods are stored
+    there, too. Then the places are assigned so that driving is least.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ class Route(NamedTuple):
 class Ticks:
     """The times of a problem in whole ticks (milliseconds); trips not allowed take `NEVER`.
 
-    An *owner* of a pod is robot r, or task R + t.
+    The *owner* of a pod is a robot or a task: robot r has the number r, task t the number R + t.
 
     Parameters
     ----------
