@@ -61,7 +61,8 @@ COLUMNS: dict[str, tuple[str, ...]] = {
 }
 """The features of each kind of question: columns of its candidates, or keys of `OWN_MEANINGS`."""
 
-_KIND_OF_TASK = ("work", "store", "move", "rest")
+_KIND_OF_TASK = {"work": 0, "store": 1, "move": 2, "rest": 3}
+"""Features of tasks, by name: 1 if the column `kind` has this value."""
 
 SCALES: dict[str, float] = {
     "lines": 5.0,
@@ -139,14 +140,22 @@ def features_of(kinds: Iterable[str]) -> tuple[Feature, ...]:
 
 def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[np.float64]]:
     """Return the unscaled features of the C candidates, by name, each of shape (C,)."""
+    return dict(zip(COLUMNS[kind], unscaled(candidates, kind, view), strict=True))
+
+
+def unscaled(candidates: Candidates, kind: str, view: View) -> NDArray[np.float64]:
+    """Return the unscaled features of the C candidates, in order of `COLUMNS`, shape (F, C)."""
     columns = candidates.columns
-    if kind == "ta":
-        task = columns["kind"]
-        columns = columns | {name: task == number for number, name in enumerate(_KIND_OF_TASK)}
-    elif kind == "poa":
-        orders = np.array([len(station.orders) for station in view.pick_stations], np.float64)
-        columns = columns | {"orders_at_station": orders[columns["station"]]}
-    return {name: np.asarray(columns[name], np.float64) for name in COLUMNS[kind]}
+    found = np.empty((len(COLUMNS[kind]), len(candidates)))
+    for values, name in zip(found, COLUMNS[kind], strict=True):
+        if name in columns:
+            values[:] = columns[name]
+        elif name == "orders_at_station":
+            orders = np.array([len(station.orders) for station in view.pick_stations], np.float64)
+            values[:] = orders[columns["station"]]
+        else:
+            np.equal(columns["kind"], _KIND_OF_TASK[name], out=values)
+    return found
 
 
 def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> NDArray[np.float64]:

@@ -13,8 +13,6 @@ from rmfs.world.stations import PickStation
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
     from rmfs.control.answers import Columns
     from rmfs.control.view import View
     from rmfs.world.robots import Robot
@@ -46,22 +44,16 @@ def tasks(
     if refused:
         out = {_key(one) for one in refused}
         rows = [(at, kind, to) for at, kind, to in rows if (robots[at].index, kind, to) not in out]
-    table = np.array(rows, np.int64).reshape(-1, 3)
-    at, kind, station = table[:, 0], table[:, 1], table[:, 2]
-    index = np.array([robot.index for robot in robots], np.int64)
-    works = kind == WORK
-    picks = np.array([isinstance(one, PickStation) for one in view.stations])
     columns: Columns = {
-        "robot": index[at],
-        "kind": kind,
-        "station": station,
-        "pick": works & picks[station],
-        "away_s": np.zeros(len(table)),
-        "units": np.zeros(len(table), np.int64),
-        "robots": np.zeros(len(table), np.int64),
+        "robot": np.array([robots[at].index for at, _, _ in rows], np.int64),
+        "kind": np.array([kind for _, kind, _ in rows], np.int64),
+        "station": np.array([station for _, _, station in rows], np.int64),
+        "pick": np.zeros(len(rows), np.bool_),
+        "away_s": np.zeros(len(rows)),
+        "units": np.zeros(len(rows), np.int64),
+        "robots": np.zeros(len(rows), np.int64),
     }
-    if works.any():
-        _measure(view, robots, columns, at, station, works)
+    _measure(view, robots, columns, rows)
 
     if view.batteries is not None:
         columns["level_share"] = view.batteries.shares()[columns["robot"]]
@@ -108,22 +100,19 @@ def _rows(view: View, robots: Sequence[Robot]) -> list[tuple[int, int, int]]:
 
 
 def _measure(
-    view: View,
-    robots: Sequence[Robot],
-    columns: Columns,
-    at: NDArray[np.int64],
-    station: NDArray[np.int64],
-    works: NDArray[np.bool_],
+    view: View, robots: Sequence[Robot], columns: Columns, rows: Sequence[tuple[int, int, int]]
 ) -> None:
     """Fill in the attributes of work for stations."""
-    stations = view.stations
-    here = np.array([robot.waypoint for robot in robots])
-    there = np.array([one.waypoint for one in stations])
-    at, station = at[works], station[works]
-    columns["away_s"][works] = view.travel.estimate_s(here[:, None], there)[at, station]
-    units = np.array([open_work(view, number) for number in range(len(stations))])
-    columns["units"][works] = units[station]
-    columns["robots"][works] = np.array([len(one.tasks) for one in stations])[station]
+    works = [row for row, (_, kind, _) in enumerate(rows) if kind == WORK]
+    if not works:
+        return
+    stations = [view.stations[rows[row][2]] for row in works]
+    here = np.array([robots[rows[row][0]].waypoint for row in works])
+    there = np.array([station.waypoint for station in stations])
+    columns["pick"][works] = [isinstance(station, PickStation) for station in stations]
+    columns["away_s"][works] = view.travel.estimate_s(here, there)
+    columns["units"][works] = [open_work(view, station.index) for station in stations]
+    columns["robots"][works] = [len(station.tasks) for station in stations]
 
 
 def _served(view: View, pod: int) -> list[int]:

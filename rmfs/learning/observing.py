@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from rmfs.control.features import (
     Feature,
     best_rows,
     features_of,
-    numbers,
+    unscaled,
 )
 from rmfs.control.problems import Problem
 from rmfs.control.task_candidates import MOVE, has_tasks
@@ -47,8 +46,7 @@ follows."""
 _NONE = np.empty(0, np.intp)
 
 
-@dataclass(frozen=True)
-class Options:
+class Options(NamedTuple):
     """The answers offered to a policy.
 
     Attributes
@@ -77,7 +75,7 @@ class Options:
     @property
     def is_forced(self) -> bool:
         """Whether only one action is possible."""
-        return int(self.mask.sum()) < 2
+        return int(np.count_nonzero(self.mask)) < 2
 
 
 class Observing:
@@ -160,12 +158,13 @@ class Observing:
         found = np.zeros(self._shape, np.float32)
         if not count:
             return Options(decision, _NONE, found, mask)
-        columns = numbers(candidates, kind, decision.view)
-        if rows is not None:
-            columns = {name: values[rows] for name, values in columns.items()}
-        best = best_rows(columns, self._rankings[kind], self.k)
         # one row per feature: a few long operations instead of many short ones
-        block = np.array([values[best] for values in columns.values()])
+        block = unscaled(candidates, kind, decision.view)
+        if rows is not None:
+            block = block[:, rows]
+        columns = dict(zip(COLUMNS[kind], block, strict=True))
+        best = best_rows(columns, self._rankings[kind], self.k)
+        block = block[:, best]
         places, scales = self._places[kind]
         if len(block):
             block /= scales
