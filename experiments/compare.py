@@ -49,7 +49,8 @@ class Side:
     inputs
         Known inputs as dotted keys and values.
     note
-        Description of missing runs of the experiment; empty if there are none, or no experiment.
+        Description of missing runs of the experiment; empty if none are missing, or if the side
+        does not belong to an experiment.
     """
 
     name: str
@@ -69,8 +70,8 @@ class Comparison:
     outputs
         One row per footprint column: `baseline` and `other` (means over the common seeds or, if
         there are none, over all seeds), `difference` (`other` minus `baseline`) with the ends
-        `low` and `high` of its interval, `relative` (difference divided by baseline), and `p`.
-        Interval and `p` are nan if there is only one seed.
+        `low` and `high` of its interval, `relative` (difference divided by baseline), and the
+        p value `p`. Interval and `p` are nan if there is only one seed.
     pairs
         Number of seeds in common; 0 if the samples were treated as independent.
     identical
@@ -277,7 +278,7 @@ MAIN = (
     "order_turnover_median_s",
     "late_share",
 )
-"""Outputs shown unless all are requested."""
+"""Outputs shown by default."""
 
 
 def chosen_columns(

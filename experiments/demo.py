@@ -1,6 +1,6 @@
 """The demonstration of `make demo`: the default warehouse, three seeds, a table and a picture.
 
-The trace of every run is checked before its figures are shown. Run folders and picture are written
+The trace of every run is checked before its results are shown. Run folders and picture are written
 to `results/demo`.
 """
 
@@ -32,7 +32,7 @@ FIGURES = {
     "pick_station_idle_share": ("pick stations idle, share", "{:.4f}"),
     "sim_per_wall": ("simulated seconds per wall second", "{:,.0f}"),
 }
-"""Column of the footprint, label and format of each figure shown."""
+"""Column of the footprint, label and format of each measure shown."""
 
 
 def interval(values: pd.Series, confidence: float = 0.95) -> tuple[float, float]:
@@ -61,7 +61,7 @@ def run(seed: int) -> pd.DataFrame:
 
 
 def table(footprints: pd.DataFrame) -> Group:
-    """Return mean and confidence interval of each figure over the seeds."""
+    """Return mean and confidence interval of each measure over the seeds."""
     from rich import box
     from rich.console import Group
     from rich.table import Table

@@ -2,9 +2,9 @@
 
 The visits of pods to stations, and the times at which pods are lifted and set down, are kept as in
 the run. With this knowledge, PSA could have chosen other storage locations to reduce loaded
-driving, and TA other robots to reduce empty driving. Each problem has a proven lower bound on the
-driving time. The driving time of the run in excess of the bound is the most that a better PSA or TA
-could have saved with everything else unchanged.
+driving, and TA could have chosen other robots to reduce empty driving. Each of these two problems
+has a proven lower bound on the driving time. The driving time of the run in excess of the bound is
+the most that a better PSA or TA could have saved with everything else unchanged.
 """
 
 from __future__ import annotations
@@ -89,13 +89,13 @@ class Foresight(Measure):
 
 
 def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[Stays, float]:
-    """Return the stays of pods at storage locations in a run, and the time of their drives, in s.
+    """Return the stays of pods at storage locations in a run, and their total cost in it, in s.
 
     A storage location is reserved for a pod from the start of the drive there until a robot begins
-    to lift the pod again. The cost of this stay is the time of the drive from the station before it
-    and of the drive to the station after it. A pod that stands at a storage location at the
-    beginning stays there, at no cost, until it is first lifted; the storage locations of pods that
-    never move are left out.
+    to lift the pod again. The cost of this stay is the unhindered time of the drive from the
+    station before it and of the drive to the station after it. A pod that stands at a storage
+    location at the beginning stays there, at no cost, until it is first lifted; the storage
+    locations of pods that never move are left out.
 
     Parameters
     ----------
@@ -108,8 +108,8 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 
     Returns
     -------
-    The stays, with one zone per storage location; and the total unhindered time, in s, of the
-    drives to and from the storage locations that were used in the run.
+    The stays, with one zone per storage location; and their total cost, in s, at the storage
+    locations that were used in the run.
     """
     loaded = trips[trips["loaded"]]
     lifts = {
@@ -155,7 +155,7 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 
 
 def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int]:
-    """Return the empty driving of a run, and the minimum over all choices of robots, in s.
+    """Return the empty driving of a run, and its minimum over all choices of robots, in s.
 
     In every choice considered, every pod is lifted at the same place and no later than in the run,
     by a robot that was free before. A robot becomes free when and where a trip to a pod begins in

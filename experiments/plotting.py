@@ -47,7 +47,8 @@ class Wish:
     confidence
         Confidence of the intervals. Default 0.95.
     interactions
-        Whether `effects` also shows pairs of factors. Default: yes, if the runs can separate them.
+        Whether `effects` also shows the interactions of pairs of factors. Default: yes, if the
+        runs can separate them from other effects.
     factors
         Factors for `interaction`: two or more, by key or short name. Default: all.
     goals

@@ -37,7 +37,7 @@ def write_report(
     Parameters
     ----------
     columns
-        Columns of the report, each with plots and, where possible, an analysis of variance.
+        Footprint columns to report, each with plots and, where possible, an analysis of variance.
     baseline
         Arm with which all others are compared. Default: the first.
 

@@ -1,9 +1,9 @@
 """Speed of runs, and how their time is spent: `rmfs bench`.
 
-Each case is run several times in this process on one core, without checker and trace. A fixed
-reference loop is timed in between, so that machines can be compared. The figure to quote is
-simulated seconds per wall second; to compare machines, multiply it by the seconds that the loop
-takes.
+All runs take place in this process, on one core, without checker and trace; each case is run
+several times. A fixed reference loop is timed before each run, so that machines can be compared.
+The figure to quote is simulated seconds per wall second; to compare machines, multiply it by the
+seconds that the loop takes.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Case:
     ----------
     duration_s
         Simulated seconds. There is no warm-up, so the time to build the first tables for the search
-        of routes is included.
+        for routes is included.
     """
 
     layout: str

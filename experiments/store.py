@@ -72,12 +72,12 @@ class Store:
 
     @contextmanager
     def locked(self) -> Iterator[None]:
-        """Lock the folder against other drivers, and remove half-written files of interrupted ones.
+        """Lock the folder against other processes; remove half-written files of interrupted ones.
 
         Raises
         ------
         InputError
-            If another driver is working on the folder.
+            If another process has locked the folder, or the folder cannot be written.
         """
         try:
             (self.folder / RUNS).mkdir(parents=True, exist_ok=True)

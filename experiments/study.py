@@ -83,7 +83,7 @@ class Study:
         by: str | None = None,
         confidence: float = 0.95,
     ) -> Table:
-        """Return paired differences (level minus baseline) with confidence intervals.
+        """Return paired differences (arm or level minus baseline) with confidence intervals.
 
         Parameters
         ----------
@@ -205,8 +205,8 @@ def experiment(
     seeds
         Seeds, the same for every arm, so that arms can be compared seed by seed.
     base
-        Inputs of all arms: `layout`, `scenario`, `controllers`, all `default` by default, and
-        further parameters.
+        Inputs of all arms: `layout`, `scenario` and `controllers` (each is `default` if not given),
+        and further parameters.
     measures
         Additional measures, as for `rmfs.simulate`.
     keep

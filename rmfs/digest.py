@@ -10,7 +10,7 @@ import numpy as np
 OMITTED = "omitted"
 """Metadata key of fields that are left out of the hash while they are empty.
 
-A dataclass can thus get a new field without a change of the hashes of its older values.
+A dataclass can thus get a new field without changing the hash of values in which it is empty.
 """
 
 

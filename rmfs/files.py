@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 _PARTIAL = re.compile(r"\.(?P<target>.+)\.partial-[a-z0-9_]{8}")
-"""Names of temporary folders beside their targets, as `tempfile.mkdtemp` makes them."""
+"""Pattern of the names of temporary folders beside their targets, made by `tempfile.mkdtemp`."""
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 LARGEST_MIB = 64
@@ -97,8 +97,8 @@ def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True
     """Yield a temporary folder beside `target`, which is renamed to `target` on success.
 
     The temporary folder is created before any work is done, so that a target that cannot be written
-    is noticed early. On an error or an interruption it is removed, together with any parents
-    created for it. The target is locked against other processes meanwhile.
+    is noticed early. On an error or an interruption it is removed, together with parent folders
+    created for it. In the meantime, the target is locked against other processes.
 
     Parameters
     ----------

@@ -89,7 +89,7 @@ class Observed:
     disturbances
         Counts the disturbances of the run.
     order_stream, bundle_stream
-        The orders, or bundles, read from a file; None if the scenario names none.
+        The orders and the bundles read from a file; None if the scenario names no such file.
     """
 
     layout: Layout

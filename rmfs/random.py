@@ -1,7 +1,7 @@
 """A tree of named random streams, grown from one seed.
 
 Each stream is derived from the run's seed and its own fixed number. Adding a stream therefore never
-changes another, and two arms of an experiment with the same seed face the same demand.
+changes another, and arms of an experiment that run with the same seed face the same demand.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ TILE_BYTES = 1600
 WAYPOINT_BYTES = 3200
 """Bytes of a run per waypoint, for tables of travel times and the planner's timetables."""
 STOCK_BYTES = 24
-"""Bytes of a run per SKU and pod, for contained, available and initially drawn units."""
+"""Bytes of a run per pair of SKU and pod: units contained, units available, and initial units."""
 SKU_BYTES = 400
 ORDER_BYTES = 1000
 """Bytes of a run per order waiting at time zero."""

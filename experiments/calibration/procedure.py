@@ -2,15 +2,15 @@ r"""Find where a noisy, monotone response has a given mean: a root is estimated,
 
 1. *Search*: retrospective approximation (H. Chen and B. W. Schmeiser 2001, Stochastic root finding
    via retrospective approximation, IIE Transactions 33(3), 259-275). The mean over a few seeds,
-   which are the same at every level, is a deterministic function of the level. Its root is found by
-   the Illinois variant of regula falsi and serves as a guess.
+   which are the same at every level, is a deterministic function of the level. The level at which
+   it meets the target is found by the Illinois variant of regula falsi and serves as a guess.
 2. *Test*: the guess is simulated with new seeds. The two-stage rule of Stein (1945, A two-sample
    test for a linear hypothesis whose power is independent of the variance, Annals of Mathematical
-   Statistics 16(3), 243-258) determines how many are needed for a confidence interval whose half
-   width is half the tolerance; it is exact if runs are normally distributed. The guess is accepted
-   if the whole interval lies within the tolerance. Otherwise a monotone function is fitted to the
-   means so far (isotonic regression), and the level at which it meets the target is the next guess,
-   which is tested with further seeds.
+   Statistics 16(3), 243-258) determines how many seeds are needed for a confidence interval whose
+   half width is half the tolerance; the rule is exact if runs are normally distributed. The guess
+   is accepted if the whole interval lies within the tolerance. Otherwise a monotone function is
+   fitted to the means so far (isotonic regression), and the level at which it meets the target is
+   the next guess, which is tested with further seeds.
 
 The k-th test may err with probability :math:`\alpha / 2^k`, so all tests together err with
 probability at most :math:`\alpha = 1 - confidence`. This bounds the probability that the mean at

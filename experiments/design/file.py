@@ -110,7 +110,7 @@ class Select(Strict):
 class Stage(Strict):
     """One part of an experiment; the next one starts when it has ended.
 
-    All arms of a stage get its seeds. `until` and `select` then add further ones.
+    All arms of a stage get the seeds of the stage; `until` and `select` then add further seeds.
     """
 
     name: str = Field(min_length=1)

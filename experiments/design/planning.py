@@ -190,7 +190,7 @@ def plan(
     Raises
     ------
     InputError
-        If the file itself is invalid. Errors of arms are listed in `problems`.
+        If the file itself is invalid. Errors of arms are listed in `Plan.problems`.
     """
     path = design_file.locate(name_or_path)
     _, table = design_file.read(path)

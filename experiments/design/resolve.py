@@ -50,7 +50,8 @@ class Resolver:
     Attributes
     ----------
     measures
-        Measures of the user, whose code determines columns of a run.
+        The user's own measures. Their code determines columns of a run, so it is part of the
+        digest.
     files
         Hash of every file read so far, by the name under which it was given.
     """

@@ -1,7 +1,7 @@
 """Determines which runs are needed, given the results so far.
 
-This depends only on the design and on reproducible results, never on their order of arrival: an
-interrupted experiment needs the same runs as an uninterrupted one.
+The answer depends only on the design and on reproducible results, never on the order in which the
+results arrive: an interrupted experiment needs the same runs as an uninterrupted one.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Schedule:
     complete
         Whether no further runs will be added.
     remarks
-        Decisions of the stages' rules, one line each.
+        What the stages have decided from the results, such as the arms that go on, one line each.
     """
 
     runs: list[Wanted]

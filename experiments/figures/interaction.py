@@ -34,8 +34,8 @@ def interaction(
     """Draw means over the levels of a factor, with one line per level of another factor.
 
     Parallel lines mean that there is no interaction. The interval of a point is computed from the
-    means over all arms with both levels, seed by seed. Combinations missing from the design
-    leave gaps.
+    means over all arms with the point's two levels, seed by seed. Combinations missing from the
+    design leave gaps.
 
     Parameters
     ----------

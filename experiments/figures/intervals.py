@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.statistics.intervals import Method
 
 SPREAD = 0.25
-"""Vertical extent of the seeds of an arm, in rows."""
+"""Maximum distance of a dot from the middle of its row, in rows."""
 
 
 def intervals(
@@ -30,7 +30,8 @@ def intervals(
 ) -> None:
     """Draw one row per arm: a dot for each seed, the mean and its confidence interval.
 
-    In every row, the dot of a given seed has the same height, so that pairs can be recognised.
+    The dot of a given seed is at the same height within every row, so that runs with the same
+    seed can be recognised.
 
     Parameters
     ----------

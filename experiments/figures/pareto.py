@@ -106,7 +106,7 @@ def goal_of(column: str, stated: Goal | None = None) -> Goal:
     Raises
     ------
     InputError
-        If neither states a goal.
+        If no goal is stated, and the data dictionary has none.
     """
     if stated is not None:
         return stated

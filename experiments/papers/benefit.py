@@ -27,7 +27,7 @@ START = ", start rule"
 """Suffix of the names of arms in which the start rule of an optimiser decides, without a solver."""
 DECISION_S = "optimiser_wall_median_s"
 LEAST_SHARE = 0.9
-"""Minimum share of decisions by optimisers for a run to count as one with optimisers."""
+"""Minimum `optimiser_decision_share` of a run with an optimiser; less is refused."""
 
 
 def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:

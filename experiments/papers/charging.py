@@ -2,15 +2,15 @@
 
 The designs `charging` and, with `--large`, `charging-large` run fleets of different sizes on the
 default and the large site: without batteries, with plug-in places, with battery swap, and with
-queue waypoints that charge waiting robots. The study publishes units per hour, the robots needed
-for 95 % of the capacity of the pick stations (interpolated between fleets, seed by seed), and by
-how many percent this exceeds the number without batteries. `--rules` compares the rules and the
-optimiser of charge assignment (CA) with robots that need no energy, and with the rule `threshold`,
-paired by seed. It uses the design `charging-rules` or, with `--demand`, `charging-demand`, in which
-periods of high and low demand alternate. For comparison, Zou et al. (2018, doi
-10.1016/j.ejor.2017.12.008) report that more than 15 % more robots are needed with battery recovery
-than without, and that the retrieval time with swapping is up to 4.88 % better than with plug-in
-charging.
+queue waypoints that charge waiting robots. The study publishes units per hour, the number of robots
+needed for 95 % of the capacity of the pick stations (interpolated between fleets, seed by seed),
+and by how many percent this number exceeds the one without batteries. `--rules` compares the rules
+and the optimiser of charge assignment (CA) with robots that need no energy, and with the rule
+`threshold`, paired by seed. It uses the design `charging-rules` or, with `--demand`,
+`charging-demand`, in which periods of high and low demand alternate. For comparison, Zou et al.
+(2018, doi 10.1016/j.ejor.2017.12.008) report that more than 15 % more robots are needed with
+battery recovery than without, and that the retrieval time with swapping is up to 4.88 % better than
+with plug-in charging.
 """
 
 from __future__ import annotations
@@ -75,7 +75,7 @@ def robots_for(robots: Sequence[float], share: Sequence[float], enough: float = 
 def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
     """Return the number of robots needed with each kind of recovery.
 
-    The table also shows by how many percent this exceeds the number needed without batteries.
+    The table also shows by how many percent this number exceeds the one without batteries.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """The library of decisions: best known results, and a comparison of solvers.
 
 With `--time`, methods are timed on the library (`rmfs decisions profile`, question by question) and
-the rows are published; without it, all tables and pictures are made from the published rows.
+the times are published; without it, all tables and pictures are made from the published times.
 Families whose questions are assignment or flow problems are left out, as these are always solved to
 optimality.
 """
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 LIBRARY = ROOT / "decisions"
 SOLVED = 0.01
-"""Primal gap that counts as solved in the profiles."""
+"""Largest primal gap at which a question counts as solved in the profiles."""
 
 TIMED: dict[str, dict[str, float]] = {
     "pile_on": {"greedy": 1, "hadgs": 64, "joint": 0.512, "neighbourhood": 0.512, "cp_sat": 0.512},
@@ -123,7 +123,7 @@ def state(known: pd.DataFrame) -> pd.DataFrame:
 
 
 def online(library: Library) -> pd.DataFrame:
-    """Compare the answers given in the runs, under the limits of controllers, with the best known.
+    """Compare the answers given in runs, under the limits of controllers, with the best known ones.
 
     Parameters
     ----------

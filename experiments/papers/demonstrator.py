@@ -1,10 +1,10 @@
 """The demonstrator: one to four table-top robots (Merschformann, Xie, Li 2018, section 4).
 
 The paper drives four small robots on a grid of 36 cells of 0.45 m, with one replenishment station,
-one pick station and six pods; they reach 0.21 m/s with an acceleration of 0.5 m/s2, and a full turn
-takes 5.5 s. The paper reports no throughput. Here the same warehouse is simulated with one to four
-robots; the table shows the gain of each additional robot, and the independent checker proves every
-run safe.
+one pick station and six pods; the robots reach 0.21 m/s with an acceleration of 0.5 m/s2, and a
+full turn takes 5.5 s. The paper reports no throughput. Here the same warehouse is simulated with
+one to four robots; the table shows the gain of each additional robot, and the independent checker
+proves every run safe.
 
 With `--reference DIR` (the public instances of RAWSim-O) the layout `office-4bot` is used instead,
 which has the same waypoints and robots but four pods and more order slots.

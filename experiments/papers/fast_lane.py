@@ -2,10 +2,10 @@
 
 The inputs correspond to RAWSim-O's instances `fastlane`: layout and controllers are the same, and
 SKUs have the same distribution. Ten seeds are compared with one measured run of RAWSim-O for each
-arm. RAWSim-O plans paths by FAR, and its robots wait for the next step of the simulation before
-every hop, lift and set-down. Here paths are planned by the planner `time-windows`, by FAR, and by
-FAR with the mean of that wait added to turning and lifting times. This separates the effect of the
-rules from that of driving.
+arm. RAWSim-O plans paths by FAR (flow annotation replanning), and its robots wait for the next step
+of the simulation before every hop, lift and set-down. Here paths are planned by the planner
+`time-windows`, by FAR, and by FAR with the mean of that wait added to turning and lifting times.
+This separates the effect of the rules from that of driving.
 """
 
 from __future__ import annotations

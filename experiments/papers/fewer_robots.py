@@ -2,9 +2,9 @@
 
 The study shows units per hour over the size of the fleet at the small site, with the capacity of
 the stations and the proven bound, and the smallest fleet with which each controller reaches 95 % of
-that capacity. It takes about 0.2 CPU hours. With `--later` (0.2 CPU hours), orders that arrive over
-time are included, and the third hour is measured instead, because a small fleet initially picks
-stock that it has no time to replenish.
+that capacity. The study takes about 0.2 CPU hours. With `--later` (0.2 CPU hours), orders that
+arrive over time are included, and with a backlog the third hour is measured instead of the first,
+because a small fleet initially picks stock that it has no time to replenish.
 """
 
 from __future__ import annotations
@@ -63,8 +63,8 @@ def needed(frame: pd.DataFrame, groups: Sequence[str], enough: float = ENOUGH) -
 
     Returns
     -------
-    One row per group: `robots` (nan if no fleet of the design suffices), and the share with that
-    fleet.
+    One row per group: `robots` (nan if no fleet of the design suffices), and the share of the
+    stations' capacity that this fleet reaches.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for levels, runs in frame.groupby(list(groups), sort=False):
@@ -95,7 +95,8 @@ def picture(
     Parameters
     ----------
     clairvoyant
-        Upper bounds on units per hour by fleet size, drawn instead of the bounds of the runs.
+        Upper bounds on units per hour by fleet size that hold even for controllers that know all
+        future orders; drawn instead of the bounds of the runs.
     """
     path = study.place(name)
     with saving(path, 6.0, 4.0) as figure:

@@ -1,7 +1,7 @@
 """Figure 4 of Merschformann, Xie and Li (2018): a layout with two stations of each kind.
 
 Nothing is simulated: the picture is drawn from the generator's parameters, and its provenance
-contains the counts of the layout.
+contains the numbers of objects in the layout.
 """
 
 from __future__ import annotations

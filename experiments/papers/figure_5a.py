@@ -2,9 +2,9 @@
 
 The paper shows one run of 24 h in which random storage is replaced by nearest storage: from then
 on, the robots drive less and complete more orders. Here ten seeds are run on a layout of the same
-size as RAWSim-O's MaTiMilli, together with arms that keep either rule. The effect of the exchange
-is the difference in differences, paired by seed: second half minus first half, with the exchange
-minus without it.
+size as RAWSim-O's MaTiMilli, together with two arms that keep one of the rules throughout. The
+effect of the exchange is the difference in differences, paired by seed: second half minus first
+half in the arm with the exchange, minus the same difference with random storage throughout.
 
 With `--reference DIR` (the public instances of RAWSim-O) the original layout
 `DIR/mati/MaTiMilli.xinst` is used instead; the names of published files then end in `-reference`.
@@ -62,8 +62,9 @@ def differences(rated: pd.DataFrame, confidence: float = 0.95) -> pd.DataFrame:
 
     Returns
     -------
-    Means of the four combinations of arm and half, the difference in differences with its interval,
-    and its ratio to the mean of the arm without exchange in the second half (`relative`).
+    Means of the two arms (random storage throughout, and with the exchange) in both halves; the
+    difference in differences with its interval; and its ratio to the mean of random storage in the
+    second half (`relative`).
     """
     rows = {}
     for column in COLUMNS:

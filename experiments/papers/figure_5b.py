@@ -56,7 +56,7 @@ def areas(layout: Layout) -> NDArray[np.str_]:
 def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
     """Return numbers of waypoints, visits per waypoint, and shares, per seed and area.
 
-    The shares are those of the visits and of the waiting time.
+    The shares are those of an area in all visits and in all waiting time.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The number of robots that the large site needs: rules, planned visits, and the start rule.
+"""The number of robots that the large site needs with rules, planned visits, and the start rule.
 
 The study shows units per hour over the size of the fleet, with the stock level kept constant, and a
 bound that holds even for controllers that know all future orders (docs: bounds); the smallest fleet

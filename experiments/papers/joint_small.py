@@ -6,8 +6,8 @@ per order than for sequential rules (SEQU). Here the site is rebuilt as far as i
 ten and six robots, and with a backlog of 100 orders as in the paper as well as with orders that
 arrive independently of the controllers. M1G and HADGS are compared with the joint controllers of
 rmfs, with whole orders and with split orders (Xie, Thieme, Krenzler, Li 2021). For six robots, when
-robots are scarce, the table also contains a corrected M1G, `pile-on` with a reward per unit, and
-the start rule of every optimiser. The study takes about 0.5 CPU hours.
+robots are scarce, the table also contains a corrected M1G, the joint controller `pile-on` with a
+reward per unit, and the start rule of every optimiser. The study takes about 0.5 CPU hours.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """The cost of motions that begin late, and the benefit of repairing plans.
 
 The design `late-motions` lets motions of the default site begin late with three probabilities and
-two ranges of lateness, as in published benchmarks (0.0005 to 0.02 per motion, 1 to 200 time units,
-here seconds), with and without repair of the plans of robots that have to wait. The study publishes
-the loss compared with perfect execution and the effect of repair, both paired by seed, and a figure
-of the loss over the lateness per robot.
+two ranges of lateness (how late they begin), as in published benchmarks (0.0005 to 0.02 per motion,
+1 to 200 time units, here seconds), with and without repair of the plans of robots that have to
+wait. The study publishes the loss compared with perfect execution and the effect of repair, both
+paired by seed, and a figure of the loss over the lateness per robot.
 """
 
 from __future__ import annotations

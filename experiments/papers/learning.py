@@ -1,11 +1,11 @@
 """Comparison of look-ahead, trained linear rules and optimisers with the other rules.
 
-The study has four regimes of the small site, with seeds not used in training. With `--sites`, it
-has one regime of the default site and one of the large site instead. Every arm is compared with the
-default rules and with the best rule of its regime. The measure is units picked or, in the regimes
-with arrivals and tight due times, orders completed late or overdue at the end. p values are
-corrected by Holm's method over all arms of a regime. A bound that holds for all controllers,
-whatever they know, shows how much room there is for improvement.
+The study has four regimes of the small site (kind of demand and number of robots), with seeds not
+used in training. With `--sites`, it has one regime of the default site and one of the large site
+instead. Every arm is compared with the default rules and with the best rule of its regime. The
+measure is units picked or, in the regimes with arrivals and tight due times, orders completed late
+or overdue at the end. p values are corrected by Holm's method over all arms of a regime. A bound
+that holds for all controllers, whatever they know, shows how much room there is for improvement.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def with_goals(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def most_units(runs: pd.DataFrame) -> float:
-    """Return an upper bound on the units that any controller can pick in a run of these arms."""
+    """Return an upper bound on the units that any controller can pick in one of these runs."""
     return float((runs["units_per_h_bound"] * runs["duration_s"]).max() / 3600.0)
 
 

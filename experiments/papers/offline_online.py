@@ -114,7 +114,7 @@ def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
     decision
         The question.
     changes
-        The changes.
+        New values of the settings to change, by key.
     """
     asked = dict(decision.asked)
     for key, value in changes.items():

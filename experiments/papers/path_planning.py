@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.papers.study import Study
 
 Rows = dict[tuple[str, str], dict[tuple[str, str], float]]
-"""The cells of the table by layout and method."""
+"""The cells of the table, by row (layout and method) and then by column."""
 
 OURS = "time-windows"
 METHOD = "controllers.pp"
@@ -112,8 +112,8 @@ INSTANCES = [
     ),
     Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 0}, riding=True),
 ]
-"""The layouts of the study, with RAWSim-O's figures. The initial phase, in which all robots are
-free, has more influence on figures of short simulations."""
+"""The layouts of the study, with RAWSim-O's figures. The shorter a simulation, the more its figures
+depend on the initial phase, in which all robots are free."""
 
 CAPTION = (
     "Path planning methods over an hour with a constant backlog: means over seeds with 95% "

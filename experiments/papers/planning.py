@@ -2,10 +2,10 @@
 
 TA planning is run at the small site with three to five robots (`--large`: the large site with 20
 and 30), with whole orders, a backlog or arrivals, after a warm-up. The start rule is the same
-controller with `method = "greedy"`: it has the same other parameters, and continues the previous
-plan, but does not search. With `--anticipation`, planning is compared with planning that also
-considers future orders. Bundles and used space are shown as well, because storing fewer bundles
-frees robots for a while.
+controller with `method = "greedy"`: its other parameters are the same, and it continues the
+previous plan, but does not search. With `--anticipation`, planning is compared with planning that
+also considers future orders. Bundles and used space are shown as well, because storing fewer
+bundles frees robots for a while.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """The cost of planning time: units per hour over the time that a path plan takes.
 
 The design `price-of-planning` varies how long the plan of a trip takes, on two layouts with five
-fleets. All robots have one planner. The study publishes the change of units per hour compared with
+fleets. All robots share one planner. The study publishes the change of units per hour compared with
 plans that take no time, paired by seed, and for each fleet the time from which planning costs
-throughput. A design of your own (`--design`) can have other modes and invocations of planning
-(docs: path-planning), and a planner for each robot (labels that end in ", each").
+throughput. In a design of your own (`--design`), the time of a plan can be determined in other
+ways, planning can begin at other moments (docs: path-planning), and each robot can have its own
+planner (labels that end in ", each").
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ def seconds(planning: str) -> float:
 
 
 def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float]:
-    """Return the time of a plan from which planning costs throughput, and the next shorter, in s.
+    """Return the shortest time per plan that costs throughput, and the next shorter time, in s.
 
     Planning costs throughput from the shortest time for which, as for all longer times in the
     design, the confidence interval of the change lies below zero. Where there is no such time, or
@@ -102,7 +103,7 @@ def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float
 
 
 def thresholds(frame: pd.DataFrame) -> Table:
-    """Return where planning begins to cost throughput, per fleet."""
+    """Return a table of the time per plan from which planning costs throughput, by fleet."""
     rows: Rows = {}
     for fleet in frame[FLEET].unique():
         units = interval(wide(frame, fleet)[INSTANT])

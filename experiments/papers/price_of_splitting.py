@@ -6,10 +6,10 @@ split no more orders than the wall can hold or, in arms `always`, any number. Th
 means; differences paired by seed; the gain of splitting within the capacity of the wall over the
 better of two alternatives (whole orders, and splitting regardless of the wall); and the gain of
 optimisers over their start rules. It also publishes three break-even points of splitting: the
-number of slots from which on splitting picks more units per hour; the packer's time per additional
-tote at which the work of pickers and packers per unit is the same as with whole orders; and the
-transport time to the wall at which split orders are on average packed as early as whole ones.
-`--default` and `--large` select these sites.
+number of slots of the wall from which on splitting picks more units per hour; the packer's time per
+additional tote at which the work of pickers and packers per unit is the same as with whole orders;
+and the transport time to the wall at which split orders are on average packed as early as whole
+ones. `--default` and `--large` select these sites.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def break_even(slots: Sequence[float], gain: Floats) -> float:
         the number before it is returned.
     gain
         Gain with each wall. A running maximum is used, so that noise cannot make the gain decrease
-        with the slots.
+        as the number of slots increases.
 
     Returns
     -------
@@ -109,14 +109,14 @@ def break_even(slots: Sequence[float], gain: Floats) -> float:
 
 
 def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, float]:
-    """Return the slots from which on splitting picks more units per hour, and a 95 % interval.
+    """Return from how many slots on splitting picks more units per hour, and a 95 % interval.
 
     Parameters
     ----------
     runs
         Runs with one kind of demand.
     way_s
-        Time to the walls, in s. The wall with any number of slots is always included, whatever its
+        Time to the walls, in s. The wall with unlimited slots is always included, whatever its
         distance, because it is never full.
 
     Returns
@@ -156,11 +156,11 @@ def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[floa
 
 
 def tolerable_way_s(split: pd.DataFrame, whole: pd.DataFrame, way_s: float) -> pd.Series[float]:
-    """Return the time to the wall at which splitting does not change the mean packing time, in s.
+    """Return the time to the wall at which orders are packed as early with splitting as without.
 
-    The result has one value per seed: nan if no order was split, and negative if orders would be
-    packed later even with a wall next to the stations. Averages are over all orders; only split
-    orders go to the wall.
+    The result, in s, has one value per seed: nan if no order was split, and negative if orders
+    would be packed later even with a wall next to the stations. The time from arrival to packing is
+    averaged over all orders; only split orders go to the wall.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Rule screening: which decisions matter (Merschformann, Lamballais, de Koster, Suhl 2019).
 
-That study combined rules for five decision problems into 1620 controllers and found that pick order
+That study combined rules for five decision problems in 1620 ways and found that pick order
 assignment (POA) has a strong impact on the units picked per hour, while the other four problems do
 not. Here 72 of these combinations, chosen to estimate the main effects as precisely as possible,
 are run with common seeds; an analysis of variance shows what share of the variation each problem

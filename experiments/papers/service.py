@@ -5,7 +5,8 @@ with tardiness in its objective (`late_s`), with and without its computing time 
 `work`). The study publishes means, and differences of the optimiser's on-time shares in percentage
 points, paired by seed: to the best of the rules, which is selected from the same runs and thus
 favoured; to the start rule; and to planning that ignores due times. `--priorities` uses three
-classes of orders with different weights, and shows differences by class.
+classes of orders with different weights, and shows differences for the first class (urgent) and for
+all other orders (ordinary).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 DUE, DECIDED, SHARE = "due", "decided", "on_time_share"
 OPTIMISER = "optimiser"
 OTHERS = ("optimiser, work", "start rule", "without due times", "equal weights")
-"""Arms other than the optimiser that are not rules."""
+"""Arms that, like the optimiser itself, cannot be the best rule."""
 
 COLUMNS = (
     *(SHARE, "lateness_p95_s", "late_by_mean_s", "orders_overdue_end"),

@@ -48,8 +48,8 @@ class Study:
     published
         Folder for tables and pictures.
     suffix
-        Suffix of their names: "-reference" if an original layout was used instead of its twin,
-        "-smoke" if runs are short.
+        Suffix of the names of tables and pictures: "-reference" if an original layout was used
+        instead of its twin, "-smoke" if runs are short.
     """
 
     plan: Plan
@@ -162,7 +162,7 @@ def done(
     more
         Additional entries of the design's table `base`.
     part
-        Name of the runs' folder, if the study has several.
+        Name of the subfolder for these runs, if the study runs its design several times.
     replications
         Number of seeds instead of the design's; the option of this name can only reduce it.
     without

@@ -90,7 +90,7 @@ class DaskWorkers:
 
     @property
     def slots(self) -> int:
-        """Maximum number of submitted jobs: two per worker, so that none waits for the driver."""
+        """Maximum number of submitted jobs: two per worker, so that no worker waits for a job."""
         with self._scheduler_there():
             workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
         threads = [int(worker["nthreads"]) for worker in workers]

@@ -72,7 +72,7 @@ class Tally:
     Attributes
     ----------
     wanted, finished
-        Number of runs of the experiment, and of those already stored.
+        Number of runs of the experiment, and number of those already stored.
     ran
         Number of runs made by this driver.
     failed

@@ -111,7 +111,7 @@ def _forget_changed(files: dict[str, str]) -> None:
 
 
 _SEEN: dict[str, str] = {}
-"""Hash of each source file of users, as this process has last imported it."""
+"""Hash of each source file of users, in the version that this process imported last."""
 
 
 def _tables(run: Run, job: Job) -> dict[str, pd.DataFrame]:

@@ -38,7 +38,7 @@ ONE_THREAD = dict.fromkeys(
     ),
     "1",
 )
-"""Environment in which libraries do not start threads of their own."""
+"""Environment variables that keep libraries from starting threads of their own."""
 
 
 class Engine(Protocol):

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rmfs.experiments.store import Store
 
 ARMS = 4
-"""Number of arms in pilot runs, evenly spread over the design."""
+"""Number of arms that get a pilot run, evenly spread over the design."""
 
 SHARE = 0.05
 """Share of a run's duration that a pilot run simulates."""

@@ -1,8 +1,8 @@
 """Analysis of variance: how much of the variation of a measure each factor explains.
 
-Every effect is a comparison of two linear models by least squares, whose numbers of parameters are
-their ranks. If a design leaves out combinations of levels, effects therefore have fewer degrees of
-freedom, and effects that the design cannot separate are detected.
+Every effect is found by comparing two linear models fitted by least squares; the rank of a model
+counts as its number of parameters. If a design leaves out combinations of levels, effects therefore
+have fewer degrees of freedom, and effects that the design cannot separate are detected.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ CROSS = " x "
 """Separator of the names of two factors in the name of their interaction."""
 
 NEGLIGIBLE = 1e-9
-"""Largest share of a model column, unexplained by the others, that counts as rounding error."""
+"""A model column adds a parameter if the others leave more than this share of it unexplained."""
 
 Effect = tuple[int, ...]
 """An effect: the numbers of its factors, one for a main effect and two for an interaction."""
@@ -56,7 +56,7 @@ def anova(
     Interactions of two factors have one row each if the runs can separate all effects and leave at
     least one degree of freedom for the residual. Otherwise (as in a fraction of a grid), all
     differences between combinations of levels beyond the main effects form one row, `interactions`,
-    and the residual is the variation of equal combinations over the seeds. If no combination has
+    and the residual is the variation between runs of the same combination. If no combination has
     been run twice, interactions are part of the residual. `attrs["interactions"]` of the table
     states which case applies.
 

@@ -3,8 +3,8 @@
 Procedure KN: S.-H. Kim and B. L. Nelson (2001), A fully sequential procedure for indifference-zone
 selection in simulation, ACM Transactions on Modeling and Computer Simulation 11(3), 251-273. If
 runs are normally distributed and the best arm is better than all others by at least the
-indifference, it is selected with probability at least 1 - error. Arms may be correlated through
-common random numbers, which reduces the number of runs.
+indifference (the smallest difference worth detecting), it is selected with probability at least
+1 - error. Arms may be correlated through common random numbers, which reduces the number of runs.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ class Selection:
     left
         Arms that may still be the best.
     used
-        Number of observations of each arm that the procedure used.
+        Number of observations used, by arm.
     observations
-        Number of observations of each remaining arm.
+        Number of observations used of each arm in `left`.
     over
         Whether the procedure has ended; otherwise it needs one more observation of each remaining
         arm.
@@ -80,7 +80,8 @@ def kim_nelson(
         Observations of each arm in the order of their seeds; k-th values of different arms may be
         correlated.
     first
-        Observations in the first stage, from which variances are estimated; at least 2.
+        Number of observations of each arm in the first stage, from which variances are estimated;
+        at least 2.
     indifference
         Smallest difference of means worth detecting.
     error

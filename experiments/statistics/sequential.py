@@ -23,7 +23,7 @@ def narrow_enough(values: Sequence[float], relative: float, confidence: float = 
     Parameters
     ----------
     relative
-        Required relative error of the mean.
+        Maximum permitted relative error of the mean.
     """
     if len(values) < 2:
         return False

@@ -21,7 +21,7 @@ def rates(
     end_s: float = float("inf"),
     keys: Sequence[str] = ("arm", "replication"),
 ) -> pd.DataFrame:
-    """Return counts per hour of every run within a time window.
+    """Return the rates per hour of every run within a time window.
 
     Only intervals of the time series that lie completely within the window are counted.
 
@@ -30,7 +30,7 @@ def rates(
     series
         The table `series` of runs (`experiments.load(DIR, table="series")`).
     columns
-        Counts per interval, such as `orders_completed` and `distance_m`.
+        Columns with amounts per interval, such as `orders_completed` and `distance_m`.
     start_s, end_s
         Start and end of the window, in s since the start of the runs.
     keys

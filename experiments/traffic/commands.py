@@ -35,7 +35,7 @@ Robots = Annotated[
     int | None, typer.Option(min=1, help="Robots per tier. [default: those of the layout]")
 ]
 Seed = Annotated[int, typer.Option(min=0, help="Seed of the trips and of the planner.")]
-Duration = Annotated[float, typer.Option(min=1.0, help="Measured simulated seconds.")]
+Duration = Annotated[float, typer.Option(min=1.0, help="Simulated seconds that are measured.")]
 Warmup = Annotated[float, typer.Option(min=0.0, help="Simulated seconds before measuring.")]
 Check = Annotated[bool, typer.Option("--check", help="Prove the motion free of collisions.")]
 Settings = Annotated[
@@ -111,7 +111,7 @@ def duel(
     agents: Agents = None,
     tasks: Tasks = None,
 ) -> None:
-    """Drive the same trips with several planners: random trips, or given ones on a .map."""
+    """Drive the same trips with several planners: random or, on a grid (.map file), given trips."""
     names = planner or duels.all_planners()
     duels.check_planners(names)
     loaded, trips = _given(
@@ -148,7 +148,7 @@ def scale_command(
     seed: Seed = 1,
     out: Annotated[Path, typer.Option(help="Folder of table and picture.")] = Path("results/scale"),
 ) -> None:
-    """Measure how work and memory grow from 32 to 2000 robots at constant density."""
+    """Measure how computing time and memory grow from 32 to 2000 robots at constant density."""
     from rmfs.experiments.traffic import scale
 
     duels.check_planners([planner])
@@ -173,13 +173,16 @@ def warehouses_command(
         ),
     ] = None,
     later: Annotated[
-        float, typer.Option(min=1.0, help="Start of the second window of 600 s (s).")
+        float,
+        typer.Option(
+            min=1.0, help="Start of the later measured window, in s; both windows last 600 s."
+        ),
     ] = 1200.0,
     seed: Seed = 1,
     check: Check = False,
     out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("results/scale"),
 ) -> None:
-    """Measure how the work of warehouses grows from 250 to 2000 robots at constant density."""
+    """Measure how the computing time grows with the fleet in warehouses of constant density."""
     from rmfs.experiments.traffic import warehouses
 
     if not any(least <= site.robots <= most for site in warehouses.SITES):

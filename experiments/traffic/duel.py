@@ -95,7 +95,7 @@ def row(run: TripRun) -> dict[str, float]:
 
 
 def table(rows: dict[str, dict[str, float]], *, index: str = "planner") -> pd.DataFrame:
-    """Return the rows of all planners, given by name, as a frame."""
+    """Return the rows of all planners as a frame; `rows` contains them by name of the planner."""
     frame = pd.DataFrame.from_dict(rows, orient="index")
     frame.index.name = index
     return frame

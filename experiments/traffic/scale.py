@@ -1,8 +1,8 @@
 """Growth of work and memory with the fleet: `rmfs traffic scale`.
 
-Layouts of the default kind have 28 to 31 waypoints and about 1/16 of a station per robot at every
-size, and one planner plans random trips. Each size runs in a separate process, so that its memory
-can be measured. Times are processor times, which equal wall times on an idle core.
+The layouts are of the default kind, with 28 to 31 waypoints and about 1/16 of a station (with 32
+robots, 1/8) per robot. One planner plans random trips. Each size runs in a separate process, so
+that its memory can be measured. Times are processor times, which equal wall times on an idle core.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class Size:
     short_sides: int
 
     def layout(self, robots: int | None = None) -> Layout:
-        """Generate the layout, with its own or another number of robots."""
+        """Generate the layout; another number of robots may be given."""
         long_, short = self.long_sides, self.short_sides
         values: dict[str, Any] = {
             "robots": self.robots if robots is None else robots,

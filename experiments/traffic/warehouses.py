@@ -1,9 +1,9 @@
-"""Growth of the work of whole warehouses with the fleet: `rmfs traffic warehouses`.
+"""Growth of the computing time of whole warehouses with the fleet: `rmfs traffic warehouses`.
 
-Layouts of the default kind have ten pods and 1/12 of a pick station per robot. The backlog is
-constant, and rules decide. Each run is a separate process, so that its memory can be measured.
-Times are processor times, which equal wall times on an idle core. Two windows are measured: the
-initial rush, and a later one in normal operation.
+The layouts are of the default kind, with about ten pods and 1/12 of a pick station per robot. The
+backlog is constant, and rules decide. Each run has its own process, so that its memory can be
+measured. Times are processor times, which equal wall times on an idle core. Two windows are
+measured: the initial rush, and a later one in normal operation.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Site:
     replenishments: tuple[int, int, int, int]
 
     def layout(self) -> Layout:
-        """Generate the layout, with blocks of only 2 x 2 storage locations for enough aisles."""
+        """Generate the layout; blocks of only 2 x 2 storage locations give it enough aisles."""
         values: dict[str, Any] = {
             "robots": self.robots,
             "horizontal_aisles": self.horizontal,
@@ -171,14 +171,15 @@ def measure(
 
 
 def advance_by_windows(simulation: Simulation, until_s: float) -> int:
-    """Advance a run window by window; return the largest number of robots standing still in one.
+    """Advance a run window by window; return the largest number of robots that stood still in one.
 
     Parameters
     ----------
     simulation
         A run before the end of its warm-up.
     until_s
-        Where to stop, in s, not after the end of the warm-up (which resets the statistics).
+        Simulated time at which to stop, in s; at the latest, the end of the warm-up, at which the
+        statistics are reset.
 
     Returns
     -------
@@ -215,9 +216,9 @@ def _deciding_s(simulation: Simulation) -> float:
 
 
 def growth(frame: pd.DataFrame) -> dict[str, float]:
-    """Return, for each set of rules, the growth of the work per robot-hour.
+    """Return, for each set of rules, the growth of the processor time per robot-hour.
 
-    This is the work with the largest fleet divided by the work with the smallest fleet.
+    This is the time with the largest fleet divided by the time with the smallest fleet.
     """
     grown = {}
     for rules, rows in frame.groupby("rules", sort=False):
@@ -227,7 +228,7 @@ def growth(frame: pd.DataFrame) -> dict[str, float]:
 
 
 def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
-    """Write the table to a folder, in every format with its provenance file.
+    """Write the table to a folder as CSV and Markdown, each file with its provenance file.
 
     Parameters
     ----------

@@ -90,6 +90,8 @@ MEANINGS = {
     "level_share": Meaning("share", "charge of the robot's battery, as a share of its capacity"),
     "active": Meaning("", "1 if the station takes new work, 0 if not"),
     "pick": Meaning("", "1 if the station is a pick station, 0 if not"),
-    "kind": Meaning("", "0 work for a station, 1 store the pod, 2 move a pod, 3 rest"),
+    "kind": Meaning(
+        "", "kind of task: 0 work for a station, 1 store the pod, 2 move an idle pod, 3 rest"
+    ),
 }
 """Units and meanings of the columns of `Candidates`, by name."""

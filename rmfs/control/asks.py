@@ -45,8 +45,8 @@ class Answer:
     wall_s, build_s
         Total wall time, and the part of it that was spent building the solver's model.
     built
-        Size of the solver's model (nonzeros). If the run is paced by work, `work` and `built`
-        determine the simulated time that the answer takes.
+        Size of the solver's model (nonzeros). With the pacing `work`, the simulated time that the
+        answer takes is computed from `work` and `built`.
     scale
         Reference for the relative gap, in the unit of the objective, such as the cost of the pods
         called. Default: the absolute value of the objective, which is unsuitable if gains and costs
@@ -135,7 +135,8 @@ class Ask(Generic[Q]):
     sizes
         Dimensions of the question, such as `{"orders": 80}`, for the table of decisions.
     memo
-        Data that the controller needs when the answer arrives, such as the orders behind indices.
+        Data that the controller needs when the answer arrives, such as the orders to which indices
+        in the question refer.
     """
 
     solve: Callable[[Q], Answer]

@@ -120,7 +120,7 @@ class Controller(Generic[P]):
         self.rng = rng
 
     def next_event_s(self) -> float:
-        """Return the latest simulated time, in s, at which the controller must be asked again.
+        """Return the simulated time, in s, by which the controller must be asked again.
 
         If it is inf, the controller is asked only after events. The time is read after each call.
         """

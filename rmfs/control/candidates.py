@@ -38,13 +38,13 @@ if TYPE_CHECKING:
 
 
 def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) -> Candidates:
-    """List the possible answers to a question; the list is empty in a turn of MM.
+    """List the possible answers to a question; the list is empty if MM is asked for a decision.
 
     Parameters
     ----------
     refused
-        Answers of the same turn that could not be carried out. They are left out in a turn of TA,
-        and have no effect otherwise.
+        Earlier decisions that could not be carried out. They are left out if TA is asked for a
+        decision, and have no effect otherwise.
     """
     if question.kind != "turn":
         return _OF_KIND[question.kind](view, view.robots[question.robot], question.stations)

@@ -142,7 +142,7 @@ class DummySA(StationActivation[NoParameters]):
 
 
 class DummyCA(ChargeAssignment[NoParameters]):
-    """Leaves charging to another controller; the simulation still sends robots that run low."""
+    """Leaves charging to another controller; the simulation still sends robots with low charge."""
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER

@@ -40,7 +40,10 @@ KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.REPOSITIONING: ("move",),
     Problem.CA: ("ca",),
 }
-"""The kinds of question of each problem; a problem decided in turns has one, named after it."""
+"""The kinds of question of each problem.
+
+PPS, PSA and repositioning answer questions of TA; each other problem has one kind, named after it.
+"""
 
 COLUMNS: dict[str, tuple[str, ...]] = {
     "poa": (
@@ -96,9 +99,9 @@ SCALES: dict[str, float] = {
 OWN_MEANINGS: dict[str, tuple[str, str]] = {
     "orders_at_station": ("orders", "open orders at the station"),
     "work": ("", "1 if the robot would work for the station"),
-    "store": ("", "1 if it would store its pod"),
-    "move": ("", "1 if it would move an idle pod"),
-    "rest": ("", "1 if it would rest"),
+    "store": ("", "1 if the robot would store its pod"),
+    "move": ("", "1 if the robot would move an idle pod"),
+    "rest": ("", "1 if the robot would rest"),
 }
 """Unit and meaning of features that are not columns of candidates."""
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 KINDS: dict[Problem, tuple[type, ...]] = {
     problem: tuple(getattr(say, name) for name in problem.decisions) for problem in Problem
 }
-"""For each problem, the classes of the decisions that may be made in one of its turns."""
+"""For each problem, the classes of its decisions."""
 
 
 def why_not(given: Any, question: Question, view: View) -> str:

@@ -72,7 +72,7 @@ class TriesOut:
         self.base.hear(trigger, subject)
 
     def next_event_s(self) -> float:
-        """Return the latest simulated time, in s, at which to ask the base rule again."""
+        """Return the simulated time, in s, by which the base rule must be asked again."""
         return float(self.base.next_event_s())
 
     def best(self, call: Call) -> Iterator[Any]:

@@ -1,4 +1,4 @@
-"""The tasks that robots could do, as candidates of a turn of TA."""
+"""The tasks that robots could do, as candidates for a decision of TA."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def tasks(
     Parameters
     ----------
     refused
-        Decisions of the same turn that could not be carried out; they are left out.
+        Earlier decisions that could not be carried out; they are left out.
     robots
         The robots whose tasks are listed. Default: all that need a task or are at rest.
     """
@@ -74,7 +74,7 @@ def has_tasks(view: View) -> bool:
 
 
 def open_work(view: View, station: int) -> int:
-    """Return the amount of a station's open work, for which no pod is under way.
+    """Return the amount of a station's open work, that is, work for which no pod is under way.
 
     For a pick station, it is the number of units that its orders need and that are not bound to a
     pod; for a replenishment station, the number of pods for which bundles wait.

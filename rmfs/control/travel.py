@@ -205,8 +205,9 @@ class Travel:
     def estimate_s(self, waypoint: int | _Waypoints, others: _Waypoints) -> NDArray[np.float64]:
         """Estimate travel times to other waypoints, in s, from Manhattan distances.
 
-        A time is that of the distance at top speed plus a quarter turn. Speed and turning time are
-        those of the slowest kinds of robot. Waypoints on other tiers get a surcharge.
+        The estimate is the time for the distance at top speed plus the time for a quarter turn.
+        Speed and turning time are those of the slowest kinds of robot. Waypoints on other tiers get
+        a surcharge.
 
         Parameters
         ----------

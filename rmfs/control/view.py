@@ -45,13 +45,14 @@ class View:
     all_stations
         All stations, including those of other kinds, which come last.
     slot_news, work_news
-        Notifications of pick stations whose slots or robot may have changed, and of stations whose
-        open work may have changed (`rmfs.world.news`).
+        Notifications of pick stations that were switched on or off, were reached or left by a
+        robot, or gained or lost an order; and of stations that gained open work or may have none
+        left (`rmfs.world.news`).
     need
-        Open units per pick station and SKU, shape (S, K): units that the station's orders need and
-        that are not bound to a pod.
+        Open units per pick station and SKU, shape (S, K): units that the station's open orders need
+        and that are not bound to a pod.
     lines
-        Number of order lines of the open orders, picked or not, per pick station and SKU, shape
+        Number of order lines, picked or not, of the open orders, per pick station and SKU, shape
         (S, K).
     bundles_waiting
         Number of assigned bundles that are not yet part of a task, per replenishment station and
@@ -63,7 +64,7 @@ class View:
     asking, resting
         Robots by index: those that need a task, and those at rest or on their way to rest.
     queued_need
-        Open units of queued orders per pick station and SKU, shape (S, K).
+        The same as `need`, for the orders in the stations' pools instead of the open orders.
     travel
         Travel times and distances.
     end_s
@@ -129,7 +130,7 @@ class View:
         return self._world.staff
 
     def unit_s(self, station: int) -> float:
-        """Return the mean time of a unit at a pick station, in s, in its picker's present state.
+        """Return the mean time per unit at a pick station, in s, with its picker's present state.
 
         The additional time for layers and faces of a pod and for picking errors is not included.
         Without a picker, the time is that of the layout.
@@ -174,7 +175,7 @@ class View:
         return self.storage.version, *self.all_stations[station].work_version
 
     def has_open_work(self, station: int) -> bool:
-        """Return whether a station has orders or bundles that need a pod not yet under way."""
+        """Return whether a station has units to pick, or bundles, for which no pod is under way."""
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:

@@ -41,7 +41,8 @@ Force = Annotated[bool, typer.Option("--force", help="Replace a file that exists
 
 EXIT_REFUSED = 2
 MOST_MEASURED = 50_000
-"""Maximum number of waypoints for which `check` measures the graph; this many take seconds."""
+"""Maximum number of waypoints for which `check` computes measures of the graph; with this number,
+it takes seconds."""
 
 
 @app.command()

@@ -51,7 +51,7 @@ class StationKind:
     Attributes
     ----------
     name
-        Its name in files, tables and the viewer.
+        Name of the kind in files, tables and the viewer.
     letter
         Prefix of a station's number, used where space is short.
     colour
@@ -61,14 +61,14 @@ class StationKind:
     parameters_model
         Model of the parameters.
     task
-        Kind of task that brings a robot there, as a subclass of `VisitTask`.
+        Kind of task that brings a robot to such a station, as a subclass of `VisitTask`.
     state
         State of a station during a run, as a subclass of `Station`.
     service
         Handling of a pod at the head of the queue, as a subclass of `Service`.
     controller
-        Controller that decides which pod goes there and when, as a subclass of `VisitController`;
-        None if the controllers of the decision problems decide.
+        Controller that decides which pod visits a station and when, as a subclass of
+        `VisitController`; None if the controllers of the decision problems decide this.
     measures
         Measures whose columns the footprint contains if there are such stations.
     """
@@ -149,7 +149,7 @@ TASK_COLOURS = {
     "reposition": "#CC79A7",
     "rest": "#999999",
 }
-"""Colours of robots by task; robots bound for other kinds of stations have their colours."""
+"""Colours of robots by task; a robot bound for a station of another kind has that kind's colour."""
 
 _SHIPPED = {
     "charger": "rmfs.layout.charging:Charger",

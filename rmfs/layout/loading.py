@@ -99,7 +99,7 @@ def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layou
 
 
 def split_factors(overrides: Sequence[Override]) -> tuple[list[Override], list[Override]]:
-    """Return the overrides of parameters, and those of factors, which are applied afterwards."""
+    """Return the overrides of layout parameters, and those of `FACTORS`, to be applied later."""
     is_factor = [path[0] in FACTORS for path, _ in overrides]
     pairs = list(zip(overrides, is_factor, strict=True))
     return [one for one, late in pairs if not late], [one for one, late in pairs if late]

@@ -73,7 +73,7 @@ class ReplenishmentStation:
     Attributes
     ----------
     capacity
-        Maximum space units of bundles assigned to the station at a time.
+        Maximum total size of the bundles assigned to the station at any time, in space units.
     bundle_transfer_s
         Time for which one bundle occupies both station and robot, in s.
     """

@@ -58,8 +58,9 @@ class GraphMeasures:
         and maximum over the storage locations that have such a way. Ways may lead through any
         waypoint; elevator rides count as 0 m. None if there is no such storage location.
     bottlenecks
-        Number of waypoints outside queues whose closure would divide the floor into unconnected
-        parts: the articulation points of the undirected graph without queues.
+        Number of waypoints, not in queues, each of which would alone divide the floor into
+        unconnected parts if it were closed: the articulation points of the undirected graph
+        without queues.
     """
 
     to_station_mean_m: float | None

@@ -1,9 +1,9 @@
 """Overrides for explicit layouts, which are not generated from parameters.
 
 The aisles of an explicit layout cannot be lengthened, but its robots and stations can be changed.
-Keys that are also layout parameters have the same meaning. The other keys (`FACTORS`), the shares
-of stations that are kept and the number of robots per pick station, are meant as factors of
-experiments and also apply to generated and drawn layouts.
+Keys that are also layout parameters mean the same as these parameters. The other keys are `FACTORS`
+(the shares of stations that are kept, and the number of robots per pick station); they are meant as
+factors of experiments and also apply to generated and drawn layouts.
 """
 
 from __future__ import annotations

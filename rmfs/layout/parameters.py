@@ -70,7 +70,11 @@ class LayoutParameters(Strict):
     pod_transfer_s: Seconds = Field(2.2, description="duration of lifting or setting down a pod, s")
 
     pod_share: float = Field(
-        0.85, gt=0, lt=1, description="pods per storage location (rounded down per tier)"
+        0.85,
+        gt=0,
+        lt=1,
+        description="share of the storage locations that hold a pod at the start; the number of "
+        "pods is rounded down per tier",
     )
     pod_radius_m: Radius = Field(0.45, description="radius of a pod, m")
     pod_capacity: Space = Field(500.0, description="space units per pod")
@@ -85,7 +89,9 @@ class LayoutParameters(Strict):
         10.0, description="time in s for which a bundle occupies robot and replenishment station"
     )
     replenishment_station_capacity: Space = Field(
-        1000.0, description="maximum space units of bundles assigned to a replenishment station"
+        1000.0,
+        description="maximum total size, in space units, of the bundles assigned to a "
+        "replenishment station at any time",
     )
     elevator_s_per_tier: Seconds = Field(
         10.0, description="duration of an elevator ride over one tier, s"

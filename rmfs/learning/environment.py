@@ -67,7 +67,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         `dict` or `flat`.
     rule
         Whether following the installed rule is one of the actions. A rule assumes that all its
-        decisions are carried out. Therefore either follow it in every step or treat it as advice.
+        decisions are carried out. Therefore follow it in every step, or regard it as mere advice.
     footprint
         Whether to measure runs, so that `info` contains the footprint at the end. Without
         measurement, steps are about 5 % faster.

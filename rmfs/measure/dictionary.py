@@ -36,7 +36,7 @@ PROMISED = (
     *("collisions", "decisions", "decision_wall_s", "optimiser_calls", "optimiser_gap_mean"),
     *("paced_s", "wall_s", "sim_per_wall", "peak_rss_mb"),
 )
-"""The footprint's first columns, in a fixed order; all others follow as measures are added."""
+"""The footprint's first columns, in a fixed order; all others follow in the measures' order."""
 
 _PLACES = {name: place for place, name in enumerate(PROMISED)}
 

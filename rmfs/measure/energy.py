@@ -20,15 +20,15 @@ WH = 3600.0
 class EnergyLog:
     """Energy drawn by robots, if the scenario models it.
 
-    The energy that a robot draws between the ends of two visits with picked units is divided
-    equally among the units of the second visit. This energy includes driving, waiting, storing the
-    previous pod, and the way to a charger.
+    The energy that a robot draws from the end of one visit in which units are picked to the end of
+    the next such visit is divided equally among the units of the latter. This energy includes
+    driving, waiting, storing the previous pod, and the way to a charger.
 
     Attributes
     ----------
     samples
-        Per minute, in J: energy drawn and energy charged by all robots since the last reset, and
-        mean and minimum energy in the batteries, nan without batteries.
+        Per minute, in J: energy drawn and energy charged by all robots since the end of the
+        warm-up, and mean and minimum energy in the batteries, nan without batteries.
     per_order
         Energy in J drawn for the units of each order so far, by index of the order.
     final
@@ -63,7 +63,7 @@ class EnergyLog:
             self.samples.append((used, charged, mean, least))
 
     def picked(self, order: int, station: int) -> None:
-        """Record that a unit of an order was picked in the current visit at a station."""
+        """Record that a unit of an order was picked in the present visit to a station."""
         if self._traffic is not None:
             self._units.setdefault(station, []).append(order)
 

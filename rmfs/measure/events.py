@@ -49,7 +49,7 @@ class Happening(IntEnum):
     """A bundle was assigned a pod and a station (order: the bundle's number, sku, pod, station,
     units)."""
     BUNDLE_STORED = 8
-    """A bundle went into its pod (order: its number, sku, pod, robot, station, units)."""
+    """A bundle went into its pod (order: the bundle's number, sku, pod, robot, station, units)."""
     VISIT_STARTED = 9
     """A pod reached a station (station, pod, robot)."""
     VISIT_ENDED = 10
@@ -77,7 +77,7 @@ class Happening(IntEnum):
     """A pod is brought to a station for units of an order (order, sku, pod, robot, station, units).
     Each pick of such a unit reduces their number by one."""
     UNITS_UNBOUND = 20
-    """The pod no longer serves these units (columns as in `UNITS_BOUND`)."""
+    """A pod no longer serves units that were bound to it (columns as in `UNITS_BOUND`)."""
 
 
 COLUMNS = ("time_us", "kind", "robot", "pod", "station", "order", "sku", "units", "detail")

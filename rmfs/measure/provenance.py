@@ -128,7 +128,7 @@ def own_measures(run: Measured) -> list[type[Measure]]:
 def source(part: str, given: str) -> dict[str, Any]:
     """Return name, file and SHA-256 of an input.
 
-    The name is `given`, and the others are None, if the input did not come from a file.
+    If the input did not come from a file, the name is `given`, and file and SHA-256 are None.
     """
     try:
         path = instances.locate(KINDS[part], given)
@@ -157,8 +157,8 @@ def layout_parameters(
     Returns
     -------
     dict or None
-        The parameters; None for an explicit layout or one given as an object, which its digest
-        identifies.
+        The parameters; None for a layout that was not generated from parameters or was given as an
+        object. Such a layout is identified by its digest.
 
     Raises
     ------
@@ -204,9 +204,8 @@ def commit() -> dict[str, Any]:
     """Return the commit of the checkout that this code runs from, and whether it is modified.
 
     Changes in `results` are ignored, so that the code does not count as modified once a table has
-    been published.
-
-    Both are None if rmfs is installed from a wheel, even if the environment lies in a repository.
+    been published. If rmfs is installed from a wheel, both values are None, even if the environment
+    lies in a repository.
     """
     here = Path(__file__)
     head = _git(here.parent, "rev-parse", "HEAD")

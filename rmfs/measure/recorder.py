@@ -46,7 +46,7 @@ class Recorder(Observer):
     start_s, end_s
         Start and end of the measured time, in s since the start of the run.
     order_stream, bundle_stream
-        The orders and the bundles of a file; None if the scenario draws them.
+        The orders and the bundles read from a file; None if the scenario names no such file.
     units
         Picked units.
     lines
@@ -72,7 +72,7 @@ class Recorder(Observer):
         Calls in which a controller made decisions itself, without an optimiser; `problem` is an
         index into `problems`.
     problems
-        Decision problems in the order of their first such calls.
+        Decision problems, in the order in which they first occur in `calls`.
     asked
         Number and wall time (s) of all calls of controllers since the warm-up, by decision problem.
     questions
@@ -87,7 +87,8 @@ class Recorder(Observer):
     early_trips
         Trips that ended before the measured time.
     samples
-        Per minute: time (s), and the fleet's totals of distance and times since the last reset.
+        Per minute: time (s), and the fleet's totals of distance and times since the end of the
+        warm-up.
     plans
         Searches for plans that took simulated time.
     energy

@@ -22,7 +22,7 @@ SHOWN = ("stations", "controllers")
 """Tables that the report shows completely."""
 
 INPUTS = ("layout", "scenario", "controllers", "overrides", "notes")
-"""Keys of `run.json` that describe what was simulated; the others describe its provenance."""
+"""Keys of `run.json` that describe what was simulated; its other keys describe the provenance."""
 
 
 def write_report(run: RunFolder, path: Path) -> None:

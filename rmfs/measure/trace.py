@@ -30,7 +30,7 @@ EARLIER = {EVENTS: ("rmfs-events/1",)}
 _KEY = b"rmfs-format"
 
 DELTAS = ("t0_us", "t1_us", "time_us")
-"""Columns that are stored as differences between rows, which take fewer bytes than the values."""
+"""Columns stored as differences between successive rows, because this takes fewer bytes."""
 
 TRACE_COLUMNS = (
     "robot",

@@ -1,8 +1,8 @@
 """RAWSim-O's footprint columns and files, and their counterparts in rmfs.
 
-Text in backticks is a column of the footprint, or `table.column` of another table; the rest is
-prose. Columns that RAWSim-O computes incorrectly are computed correctly in rmfs; for columns that
-rmfs omits, the reason is given.
+In the counterparts, text in backticks is a column of the footprint of rmfs, or `table.column` of
+another table; the rest is prose. Columns that RAWSim-O computes incorrectly are computed correctly
+in rmfs; for columns that rmfs omits, the reason is given.
 """
 
 from __future__ import annotations

@@ -28,7 +28,7 @@ MOST_ELEMENTS = 2_000_000
 """Maximum number of elements; the largest published file has 60,000."""
 
 LARGEST_GAP = 1 << 20
-"""Maximum number of bytes between the starts of two elements, which limits tags and texts."""
+"""Maximum number of bytes from the start of one element to the next; limits tags and texts."""
 
 _CHUNK_BYTES = 1 << 16
 

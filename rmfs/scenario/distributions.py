@@ -171,7 +171,7 @@ class Exponential(_Cut):
 Popularity = Annotated[
     Constant | Uniform | Normal | Gamma | Exponential, pydantic.Field(discriminator="distribution")
 ]
-"""Relative frequency with which SKUs are ordered."""
+"""Distribution of the relative frequency with which SKUs are ordered."""
 
 Space = Annotated[Constant | Uniform | Normal, pydantic.Field(discriminator="distribution")]
-"""Space units taken by one unit of a SKU."""
+"""Distribution of the space units taken by one unit of a SKU."""

@@ -74,7 +74,7 @@ class UnitTimes:
 
 
 def learned(given: Learning | None, units: float) -> float:
-    """Return the factor on the time of the next unit after a number of units in this run.
+    """Return the factor on the time of the next unit after a number of units picked in this run.
 
     Unit n takes the time T1 (M + (1 - M) n**-b), where T1 is the time of the first unit and b =
     -log2(rate): Wright (1936) for M = 0, De Jong (1957) with the incompressible share M. The factor

@@ -27,7 +27,7 @@ class WordSource:
     config
         The table `orders` of a scenario.
     alphabet
-        The words and colours of its table `skus`.
+        The words and colours of the scenario's table `skus`.
     seed
         The run's seed.
     path

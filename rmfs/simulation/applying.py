@@ -23,7 +23,7 @@ class Applying:
     ----------
     prepare, exchange, unplug
         Callbacks for prepared tasks, for exchanges of controllers, and for robots that must leave a
-        plug-in place.
+        charger.
     """
 
     def __init__(

@@ -19,7 +19,8 @@ class ArrayPickler(pickle.Pickler):
     Parameters
     ----------
     aside
-        Receives the contents of arrays, which are then not part of the stream.
+        Function that receives the contents of arrays; these are then not part of the pickled
+        stream.
     """
 
     def __init__(

@@ -59,7 +59,7 @@ def resumed(path: Path, simulation: K) -> K:
     Parameters
     ----------
     simulation
-        A simulation with the same inputs that has not started.
+        A simulation that has not started, with the same inputs as the saved one.
 
     Raises
     ------

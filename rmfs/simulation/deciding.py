@@ -148,7 +148,7 @@ class Deciding:
         state: RuleState,
         answer: Call | None = None,
     ) -> None:
-        """Do the same as `ask` if questions decided outside the simulation may interrupt the rule.
+        """Do as `ask` does, for a rule that questions decided outside the simulation may interrupt.
 
         Parameters
         ----------

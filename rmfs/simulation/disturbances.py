@@ -241,7 +241,7 @@ class DisturbanceSource:
             traffic.reopen([waypoint])
 
     def _fail(self, lasting_us: int) -> None:
-        """Let a working plug-in place fail."""
+        """Let a working charger fail."""
         assert self._chargers is not None
         failed = {one.element for one in self._now("charger")}
         working = [number for number in self._chargers.stations if number not in failed]

@@ -1,4 +1,4 @@
-"""Completes decisions of TA made outside the simulation that leave a choice to other problems."""
+"""Completes TA decisions made outside the simulation, if they leave a choice to other problems."""
 
 from __future__ import annotations
 

@@ -49,7 +49,8 @@ class Snapshot(Generic[K]):
     along
         Object that is copied together with the simulation, and may refer to parts of it.
     spectators
-        Observers without influence on the run; copies have observers that do nothing instead.
+        Observers without influence on the run. In copies, they are replaced by observers that do
+        nothing.
     """
 
     def __init__(self, simulation: K, along: Any, spectators: Sequence[Observer]) -> None:

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""A rule is reported if it decided nothing in at least this last share of the run."""
+"""A rule is reported if it made no decision for at least this share of the run, up to its end."""
 LEAST_S = 300.0
-"""Minimum of that time in s."""
+"""Minimum time in s without a decision for which a rule is reported."""
 
 
 class IdleRuleWarning(UserWarning):

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     may block first."""
 
 SAMPLE_S = 60.0
-"""Simulated time between two samples, in s."""
+"""Simulated time between two samples of the state of the run, in s."""
 
 STALL_S = 3600.0
 """A run is given up if nothing has moved for this long, in s, while robots wait for a path."""

@@ -82,9 +82,9 @@ class Outside:
     pending
         The question waiting for an answer.
     given
-        Questions of the TA rule's current attempt, each with its answer.
+        Questions that the TA rule has asked since its last decision, each with its answer.
     taken
-        Number of these answers that the attempt has used.
+        Number of these answers that the rule has received since it was last asked for decisions.
     decided
         Number of decisions in the current turn so far.
     doing

@@ -102,8 +102,8 @@ class DecisionPhase:
 
         Commitments of the previous controller are part of the world and remain: bundles on pods and
         at stations, orders and robots at work. What only the previous controller could continue is
-        undone: pools of queued orders, prepared tasks, and bundles held back, if no remaining
-        controller would release them.
+        undone: pools of queued orders, prepared tasks, and, if no remaining controller would
+        release them, bundles held back.
         """
         problem, new = choice.problem, choice.controller
         if type(self._controllers[problem]) is not new:

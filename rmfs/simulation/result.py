@@ -158,7 +158,7 @@ class Run(Results):
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
-        """All pieces of motion; only if the trace was recorded."""
+        """The complete motion of the robots; only if the trace was recorded."""
         return self.traffic.trace() if self._sent is None else self._sent.trace
 
     @property

@@ -86,7 +86,7 @@ def simulate(
         How simulated time accounts for the computation of optimisers: `instant` (not at all),
         `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
     trace
-        Whether to record every piece of motion and all events.
+        Whether to record the complete motion of the robots and all events.
     events
         Log in which to record events, to be read during the run; implies `trace`.
     streams

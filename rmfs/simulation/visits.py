@@ -34,7 +34,7 @@ class VisitController(Observer, Generic[S]):
     Parameters
     ----------
     kind
-        The kind, with its parameters.
+        The kind of the stations, with its parameters.
     stations
         Current state of its stations.
     view

@@ -89,7 +89,7 @@ class Readings:
         return self._core.trips()
 
     def trace(self) -> dict[str, NDArray[Any]]:
-        """Return all pieces of motion so far, sorted by robot and time.
+        """Return the recorded motion so far, in rows sorted by robot and time.
 
         The columns are `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`,
         `heading0_rad`, `heading1_rad`, `pod` (carried, -1 without), `top_speed_m_s`.
@@ -128,11 +128,12 @@ class Readings:
     def counters(self) -> dict[str, float]:
         """Return counters of path planning.
 
-        They are `plans` (legs), `plan_failures`, `replans`, `refusals` (runs requested by a rolling
-        planner that were not free), `improvements`, `expansions`, `cost_tables`, and the wall time
+        They are `plans` (of legs), `plan_failures`, `replans`, `refusals` (a rolling planner
+        requested a run that was not free), `improvements` (plans were replaced by better ones),
+        `expansions` (of labels), `cost_tables` (of travel times), and the wall time
         `planning_s` in s. The simulated time `planning_charged_s` that plans took is 0 unless plans
-        take time. `motions`, `late_motions`, the total `lateness_s` and `repairs` are 0 unless
-        motions can be late.
+        take time. `motions`, `late_motions`, the total `lateness_s` and `repairs` (plans replaced
+        because another robot was late) are 0 unless motions can be late.
         """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9

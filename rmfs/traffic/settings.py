@@ -9,8 +9,8 @@ if TYPE_CHECKING:
 
 COST_TABLE_BYTES = 256_000_000
 EXPANSION_BUDGET = 50_000
-"""Maximum number of labels of a search for one leg. A leg that would need more starts only after
-all motion planned so far has ended."""
+"""Maximum number of labels of a search for one leg. If it would need more, the leg starts only
+after all motion planned so far has ended."""
 
 
 class PlannerSettings(NamedTuple):

@@ -30,7 +30,7 @@ class Traffic(Readings):
     layout
         The warehouse. A queue is identified by the number of its station among all stations.
     record_trace
-        Whether every piece of motion is kept (see `trace`).
+        Whether all motion is recorded (see `trace`).
     cost_table_bytes
         Memory for tables of unhindered travel times, in bytes; the least recently used are dropped.
     planner
@@ -214,8 +214,8 @@ class Traffic(Readings):
         ----------
         rests
             For each robot the waypoint at which it stands or will stop, its heading in radians
-            (that of an edge), and the time it stands there, in microseconds. None for a robot that
-            continues its present run as far as the path is clear.
+            (that of an edge), and the time in microseconds from which it stands there. None for a
+            robot that continues its present run as far as the path is clear.
 
         Raises
         ------
@@ -284,24 +284,27 @@ class Traffic(Readings):
     ) -> None:
         """Let plans of trips take time from now on; a robot departs when its plan is ready.
 
-        Only for planners that plan trip by trip. A plan avoids the reservations that exist when the
-        planner begins with it, starts after the time that planning takes, and is reserved at once.
+        Only for planners that plan trip by trip. When a planner begins with a plan, it takes the
+        reservations of that moment as given, looks for a departure after the time that planning
+        takes, and reserves the route immediately, without waiting for that time to pass.
 
         Parameters
         ----------
         price
-            `fixed`, `work`, `wall` or `replay`.
+            How the time of a plan is determined: `fixed`, `work`, `wall` or `replay`.
         numbers
-            `fixed`: microseconds per plan. `work`: microseconds per search, and per label. `wall`:
-            simulated seconds per second of wall time.
+            Simulated time that is charged. `fixed`: microseconds per plan. `work`: microseconds per
+            search, and per label. `wall`: seconds per second of wall time.
         tape
-            `replay`: robot, start (us), labels and time taken (us) of each search of another run.
+            Searches of another run, for `replay`: robot, start (us), labels and time taken (us) of
+            each.
         period_us
             Plans are begun only at multiples of this time; 0: at any time.
         lazy
-            Whether a robot asks only when it could depart, and not while it lifts its pod.
+            Whether a robot asks for a plan only when it could depart, not already while it lifts a
+            pod.
         each
-            Whether each robot has a planner of its own, not one for all.
+            Whether each robot has a planner of its own, instead of one planner for all robots.
 
         Raises
         ------
@@ -316,7 +319,7 @@ class Traffic(Readings):
         Parameters
         ----------
         level
-            0 for its own top speed, k for the k-th of `slow_shares`.
+            Number of the speed: 0 for its own top speed, k for the k-th of `slow_shares`.
 
         Returns
         -------

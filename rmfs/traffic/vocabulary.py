@@ -72,7 +72,7 @@ class TrafficEvent(NamedTuple):
 
 
 class PlannedMove(NamedTuple):
-    """A piece of a plan: a straight run or an elevator ride from rest to rest."""
+    """One move of a plan: a straight run or an elevator ride from rest to rest."""
 
     from_waypoint: int
     to_waypoint: int
@@ -88,11 +88,11 @@ class CutOff(NamedTuple):
     Attributes
     ----------
     storage
-        Storage locations (waypoints) that are closed, or from which a pod cannot be carried to one
-        of the remaining stations and back.
+        Storage locations (waypoints) that are closed, or that lack a route for pods to or from at
+        least one of the remaining stations.
     stations
-        Stations (numbers) that are closed, or to which no pod can be carried from a storage
-        location and back.
+        Stations (numbers) that are closed, or for which every storage location lacks a route for
+        pods to or from the station.
     """
 
     storage: list[int]

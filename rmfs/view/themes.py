@@ -30,8 +30,8 @@ class Theme:
     pod, elevator
         Colours of pods and of elevators.
     towards, share
-        For stations other than pick and replenishment stations, the colour of their kind is mixed
-        with the colour `towards`, of which it gets this share.
+        Colour that is mixed into the colour of a station that is neither a pick nor a replenishment
+        station, and its share of the mixture.
     stations, tasks
         Colours of stations by kind, and of robots by task.
     delay
@@ -90,7 +90,7 @@ def themes_of(layout: Layout, visits: Mapping[str, str]) -> dict[str, Any]:
     Parameters
     ----------
     visits
-        Colours of robots, by task, for tasks of visiting stations that are neither pick nor
+        Colours of robots, by task, for tasks that lead to stations other than pick and
         replenishment stations.
     """
     return {

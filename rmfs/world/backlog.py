@@ -174,15 +174,16 @@ class OrderBacklog:
 class BundleBacklog:
     """Bundles that are not assigned yet.
 
-    RPS promises a bundle to a pod, and later releases this choice, perhaps for several bundles at
-    once; ROA chooses the station. When both have been done, the bundle is assigned.
+    RPS promises a bundle to a pod, and later releases this choice, perhaps for several bundles
+    together; ROA chooses the station. When both have been done, the bundle is assigned.
 
     Attributes
     ----------
     bundles
         All bundles by index, in order of arrival.
     without_pod, without_station
-        Bundles that RPS, or ROA, has not decided yet, in order of arrival.
+        Bundles for which RPS has not chosen a pod yet, and those for which ROA has not chosen a
+        station yet, in order of arrival.
     unreleased
         By pod, the bundles promised to it but not released.
     unreleased_since_s

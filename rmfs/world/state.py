@@ -48,8 +48,8 @@ class WorldState:
         Notifications of changed pick stations. A pick station counts as changed when it is switched
         on or off, when a robot reaches or leaves it, and when it gains or loses an order.
     work_news
-        Notifications of stations, in the common numbering (pick stations first), that gain open
-        work or may have none left.
+        Notifications of stations that gain open work or may have none left. Stations are in the
+        common numbering (pick stations first).
     work_stations
         All pick and replenishment stations, to which rules assign work, in the common numbering.
     stations

@@ -174,7 +174,8 @@ class ReplenishmentStation(Station[ReplenishTask]):
     capacity
         Maximum of `used`, in space units.
     used
-        Space units of the bundles assigned, or reserved by ROA, whose transfer has not started.
+        Space units of the bundles that are assigned, or for which ROA has reserved space, and whose
+        transfer has not started.
     bundles
         Number of the bundles counted in `used`.
     waiting
@@ -209,7 +210,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
 
     @property
     def has_work(self) -> bool:
-        """Whether bundles are assigned here, or reserved by ROA, whose transfer has not begun."""
+        """Whether `used` counts any bundles, that is, bundles whose transfer has not started."""
         return self.used > 0
 
     @property

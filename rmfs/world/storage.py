@@ -1,9 +1,9 @@
 """Storage locations (*places* for short): which pod and which robot has which place.
 
 A robot *keeps* a place while it is on its way there and while it stands there, until traffic
-reports that it has departed; meanwhile no other robot may be sent there (condition W2 of the
-planner). An empty robot may keep a place beneath a stored pod; only a loaded robot needs a place
-without a pod.
+reports that it has departed; meanwhile no other robot may be sent there (condition W2 of
+`docs/safety.md`). An empty robot may keep a place beneath a stored pod; only a loaded robot needs a
+place without a pod.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ class Serves(Protocol):
 
 
 class Keeps(Protocol):
-    """The operations of the world used by tasks, which reserve pods, places and work."""
+    """The operations with which tasks reserve pods, places and work in the world."""
 
     robots: list[Robot]
     storage: Storage
@@ -153,7 +153,7 @@ class PickTask(StationTask):
     picks: deque[Pick] = field(default_factory=deque)
 
     def started(self, world: Keeps) -> Task:
-        """Claim the pod and bind all open requests of orders at the station that it can serve."""
+        """Claim the pod, and bind to it all open requests that it can serve at the station."""
         return world.start_pick(world.robots[self.robot], self.pod, self.station)
 
     def ended(self, world: Keeps) -> None:

@@ -88,7 +88,7 @@ class World(OrderOperations):
     def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
         """Start the task of bringing a pod to a pick station.
 
-        All open requests of orders at the station that the pod can serve are bound to the pod.
+        Of the open requests of orders at the station, all that the pod can serve are bound to it.
         """
         task = PickTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
@@ -139,7 +139,7 @@ class World(OrderOperations):
         return bound
 
     def give_back(self, task: PickTask) -> int:
-        """Reopen the requests of orders without a slot that a task has bound; return how many."""
+        """Reopen the requests that a task has bound for orders without a slot; return how many."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)
@@ -170,7 +170,7 @@ class World(OrderOperations):
         return task
 
     def start_charge(self, task: ChargeTask) -> ChargeTask:
-        """Start the task of going to a plug-in place or battery swap station."""
+        """Start the task of going to a charger or swap station."""
         self.stations[task.station].tasks[task.robot] = task
         self._set_task(self.robots[task.robot], task)
         return task

@@ -24,7 +24,7 @@ def answer(
     solution
         Solution returned by the model.
     values
-        Values of the solution as plain arrays and numbers; None if it has none.
+        Values of the solution as plain arrays and numbers; None if no solution was found.
     scale
         Number by which the absolute gap is divided to give the relative one. Default: the
         absolute value of the objective.

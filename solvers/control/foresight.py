@@ -25,15 +25,15 @@ class Foresight:
     Units needed within the horizon are those ordered and not yet picked, and those of new orders.
     New orders are expected to ask for as many units per hour as have been picked per hour so far,
     distributed over SKUs in proportion to the units ordered so far. To stabilise the estimate at
-    the beginning, six minutes of uninterrupted picking and twenty visits of two units are counted
-    in advance.
+    the beginning, six minutes of uninterrupted picking and twenty visits of two units each are
+    counted in advance.
 
     Parameters
     ----------
     view
         The world.
     horizon_s
-        Horizon in seconds, positive.
+        How far ahead visits are forecast, in s; positive.
     kept_s
         Seconds after which the forecast is recomputed.
     """

@@ -42,7 +42,7 @@ class JointAllocation(TaskAllocation[P]):
         self._rest = RestPlaces(view, rest, self.draw)
 
     def is_modelled(self, decision: Any) -> bool:
-        """Whether the model makes this decision: to assign an order or fetch a pod for picks."""
+        """Whether the model makes such decisions: to assign orders, or to fetch pods for picks."""
         if isinstance(decision, BringForPicks):
             return decision.robot.pod < 0
         return isinstance(decision, AssignOrder | AssignLines)

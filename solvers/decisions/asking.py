@@ -35,7 +35,7 @@ ASKERS = {
 """Modules of `rmfs.solvers.control` that define a `Question` and its `solve`, by name."""
 
 _MATCHING = "matching"
-"""Name for TA dispatch with the method `matching`; its questions are of the family `matching`."""
+"""Name for TA dispatch with the method `matching`, whose questions are of the family `matching`."""
 
 _MADE: Mapping[str, Callable[[Any], Any]] = {
     "limits": lambda given: Limits(**given),

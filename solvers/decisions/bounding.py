@@ -47,9 +47,9 @@ def bounds(
     decision
         The question.
     work
-        Limit of work of the exact search.
+        Limit of the exact search, in the unit in which its method counts work.
     where
-        Name of the question in errors. Default: its name.
+        What error messages call the question, such as the path of its file. Default: its name.
     guard_s
         Wall time after which the relaxation and the search are given up, in s. Default: none.
     search

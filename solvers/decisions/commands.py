@@ -336,7 +336,7 @@ def enter(
 
 
 def known(what: str, given: list[str] | None, names: Iterable[str]) -> list[str]:
-    """Return the requested names, by default all.
+    """Return the names given with an option; without the option, all names.
 
     Raises
     ------

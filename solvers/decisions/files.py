@@ -59,14 +59,14 @@ class Decision:
     Attributes
     ----------
     family
-        Its name in `SCHEMAS`.
+        Name of the question's family, a key of `SCHEMAS`.
     data
-        Its fields.
+        Fields of the question.
     provenance
         Where the question comes from: run, simulated time, decision problem, controller.
     asked
-        How the controller asked the question: its name (`by`), and the settings passed along with
-        the data. Empty if no controller asked it.
+        How a controller asked the question: the name of the controller's module (`by`), and the
+        settings passed along with the data. Empty if no controller asked it.
     recorded
         The answer given in the run, if there was one.
     """

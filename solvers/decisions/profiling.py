@@ -38,9 +38,9 @@ def limits(method: str, most: float) -> list[float]:
     Parameters
     ----------
     method
-        The method.
+        Name of the method.
     most
-        Largest limit allowed, in the unit of the method.
+        Largest limit allowed, in the unit in which the method counts work.
     """
     if method in UNLIMITED:
         return [most]
@@ -62,7 +62,7 @@ def points(
     decision
         The question.
     method
-        The method.
+        Name of the method.
     most
         Largest limit of work.
     seeds

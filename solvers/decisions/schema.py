@@ -114,8 +114,8 @@ weights.empty_slot | real |     | cost per slot that stays empty
 weights.complete   | real |     | reward per order covered in full
 weights.unit       | real |     | reward per unit of an order covered in full
 weights.prospects  | flag |     | whether prospects earn `complete` and `unit`, too
-weights.open_unit  | real |     | cost per unit of open demand that no pod covers
-weights.open_line  | real |     | cost per line left open of an order placed now (variant `later`)
+weights.open_unit  | real |     | cost per open unit
+weights.open_line  | real |     | cost per open line (variant `later`)
 weights.line       | real |     | reward per line covered
 weights.part       | real |     | cost per slot that an order takes beyond its first
 """
@@ -261,7 +261,7 @@ price_per_h | real | J   | robot time that one more location would save, s/h; no
             """
 level      | real  | R   | current level of a battery, as a share of its capacity
 drain      | real  | R   | consumption of a robot in a slot of work, as a share of the capacity
-ready      | whole | R   | first slot in which a robot may leave its work
+ready      | whole | R   | first time slot in which a robot may leave its work
 waits      | flag  | R   | whether a robot is already on its way to a charger, and so away
 here       | whole | R   | group of the charger at which a robot is now, or -1
 way_s      | cost  | R G | travel time of a robot to a charger of a group, s
@@ -269,22 +269,22 @@ places     | whole | G T | maximum number of robots at a group in a slot
 gain       | real  | G   | share of the capacity charged per slot at constant power
 swapped    | real  | G   | level after a swap, which takes a slot; 0: the group charges instead
 wanted     | whole | Q T | robots needed for work in a slot, in each of Q equally likely cases
-slot_s     | real  |     | length of a slot, s
+slot_s     | real  |     | length of a time slot, s
 worth_s    | real  |     | value of a full battery at the end, s of robot time
-longest    | whole |     | maximum number of slots of a stay
+longest    | whole |     | maximum number of time slots of a stay
 taper_from | real  |     | level from which charging slows down; 1: never
 full       | real  |     | level that counts as full
 least      | real  |     | level below which no robot should fall
 short_s    | real  |     | cost of falling below `least`, s per share of the capacity
-idle       | real  |     | cost of time away of a robot that no work needs, as a share of the usual
-curve      | real  |     | value of energy: 1 + curve times the mean if empty, 1 - curve if full
+idle       | real  |     | cost of time away of a robot not needed, as a share of that of one needed
+curve      | real  |     | energy is worth (1 + curve) x its mean if empty, (1 - curve) x if full
 """
         ),
         fields_of(
             """
 group  | whole | R | group of the stay of each robot, or -1
-begin  | whole | R | first slot of the stay, 0 if there is none
-length | whole | R | number of slots of the stay, 0 if there is none
+begin  | whole | R | first time slot of the stay, 0 if there is none
+length | whole | R | number of time slots of the stay, 0 if there is none
 """
         ),
         {},
@@ -364,11 +364,11 @@ station | whole | P | station of a pod, or -1
     "run_bound": Schema(
         fields_of(
             """
-duration_s                 | real  |   | length of the window, s
+duration_s                 | real  |   | length of the measured time, s
 robots                     | whole |   | robots
 picking.unit_transfer_s    | real  | S | time for which a unit occupies the station, s
 picking.unit_pick_s        | real  | S | time for which a unit occupies the robot, s
-picking.changeover_s       | real  | S | least time between service of two robots, s
+picking.changeover_s       | real  | S | least time from one robot leaving to service of the next, s
 picking.inbound_s          | real  | S | shortest drive to the station, s
 picking.outbound_s         | real  | S | shortest drive from the station, s
 picking.order_slots        | whole | S | order slots

@@ -47,7 +47,7 @@ def limits_of(method: str, work: float | None) -> Limits:
     Parameters
     ----------
     method
-        The method.
+        Name of the method.
     work
         Number of nodes for HiGHS, of steps for local searches, and of deterministic seconds for
         other methods. None: no limit.
@@ -88,7 +88,7 @@ def solve(
     guard_s
         Wall time after which the method gives up with an error, in s. Default: none.
     where
-        Name of the question in errors. Default: its name.
+        What error messages call the question, such as the path of its file. Default: its name.
 
     Raises
     ------

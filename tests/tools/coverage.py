@@ -216,7 +216,8 @@ exponential. Each figure comes from {experiments:,} experiments.
 
 With few seeds, bootstrap intervals (BCa) are too narrow, for normal and for skewed runs alike. Use
 them only with at least 30 seeds. A sequential procedure stops when the sample happens to vary
-little, so its interval covers slightly less than stated; begin with ten seeds rather than five.
+little, so its interval covers the true mean slightly less often than stated; begin with ten seeds
+rather than five.
 
 The selection of the best of five arms (procedure KN) was tested in its hardest case, in which the
 best arm is better by exactly the smallest difference worth detecting. The selection was

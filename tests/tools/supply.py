@@ -280,8 +280,8 @@ def page(parts: list[Part]) -> str:
 This page lists all packages that rmfs uses, in the versions of the lock files, with the licence
 that each package states. A test checks that all licences are compatible with rmfs's own, the MIT
 licence. The file `docs/sbom.cdx.json` contains the same list as a bill of materials (CycloneDX
-1.5). `python -m tests.tools.supply` writes both and checks stored lists of advisories, without a
-network.
+1.5). `python -m tests.tools.supply` writes this page and that file, and checks stored lists of
+advisories, without a network.
 
 Packages are installed separately, with two exceptions. The compiled core is linked with the Rust
 crates below. The page of the viewer contains three.js and uPlot. The licences of these two are in

@@ -33,8 +33,8 @@ class ChargeAssignment(Controller[P]):
         """Yield decisions that send robots to charge or make them leave a plug-in place."""
 
     def target_share(self) -> float:
-        """Return the level (share of capacity) to charge up to if the simulation sends a robot.
+        """Return the level (share of capacity) up to which a robot sent by the simulation charges.
 
-        The simulation does so independently of the rule if the charge of a robot is low.
+        The simulation sends a robot, independently of the rule, if the robot's charge is low.
         """
         return 0.8

@@ -26,9 +26,10 @@ class ForesightParameters(Parameters):
 
     score: Score = "matches"
     """Primary score. `matches`: number of the order's units for which pods at the station or on
-    their way there have spare stock. `depletion`: the same, plus 1 for each line of which one of
-    these pods has exactly the number of units needed. `surplus`: `matches`, plus 1 for each line of
-    which one of them has at least that number. `due-time`: the earlier the due time, the higher."""
+    their way there have spare stock. `depletion`: the same, plus 1 for each line for which one
+    of these pods has exactly the number of units needed. `surplus`: `matches`, plus 1 for each line
+    for which one of them has at least that number. `due-time`: the earlier the due time, the
+    higher."""
     tie_breaker: Score = "due-time"
     """Secondary score, which breaks ties of the primary score."""
 

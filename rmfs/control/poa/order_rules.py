@@ -225,8 +225,8 @@ class FrequencyAge(OrderRule):
 
     The order with the highest product of age and frequency comes first. The age of the oldest of
     the B orders in the backlog is 1, and each later order is younger by 1/B. The frequency of an
-    order is the mean, over its lines, of all units ordered of the SKU, including past orders. Ties
-    go to the order that arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
+    order is the mean, over its lines, of all units ordered of the SKU, also before the run. Ties go
+    to the order that arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
     """
 
     def __init__(

@@ -59,8 +59,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
     then the next. PPS may choose pods for the orders of a pool, and bind them to these pods, before
     the orders have a slot.
     2. Fast lane: at each station with a free slot and a pod at the head of its queue, orders that
-    this pod completes get a slot. These are orders of the station's pool or, if the pod completes
-    none of these, orders in no pool.
+    this pod completes get a slot: first those of the station's pool, then those in no pool.
     3. The stations with a free slot besides the one reserved for the fast lane take turns: each
     takes an order of its pool that stock can serve, until no station can take another.
 

@@ -17,7 +17,7 @@ class BcpParameters(RollingParameters):
 
 
 class Bcp(PathPlanning[BcpParameters]):
-    """BCP: plans quickest paths regardless of others; a conflict makes its waypoint costlier."""
+    """BCP: plans each robot's quickest path by itself; conflicts make their waypoints costlier."""
 
     parameters_model = BcpParameters
     planner = "bcp"

@@ -14,7 +14,7 @@ class FarParameters(Parameters):
     period_s: float = pydantic.Field(1.0, gt=0)
     """Minimum simulated time, in seconds, between two calls of the planner."""
     runs_granted: int = pydantic.Field(1, ge=1)
-    """Maximum number of straight runs of its path that a robot is granted at once."""
+    """Maximum number of straight runs of its path that are granted to a robot at a time."""
     reroute: bool = True
     """Whether a robot that must evade takes another path. Otherwise it moves to a random free
     waypoint next to it."""

@@ -11,17 +11,17 @@ class PibtParameters(RollingParameters):
     """Parameters of PP PIBT."""
 
     runs_granted: int = pydantic.Field(1, ge=1)
-    """Maximum number of straight runs that a robot is granted at once. Values above 1 have no
-    effect, since PIBT plans one run at a time."""
+    """Maximum number of straight runs that are granted to a robot at a time. Values above 1 have no
+    effect, since PIBT plans one straight run at a time."""
     detour_s: float = pydantic.Field(30.0, gt=0)
-    """Maximum detour, in seconds: a run is tried only if the quickest path that starts with it
-    takes at most this much longer than the quickest path of all."""
+    """Maximum detour, in seconds: a straight run is tried only if the quickest path that starts
+    with it takes at most this much longer than the quickest path of all."""
     choices: int = pydantic.Field(8, ge=1)
     """Maximum number of straight runs that a robot tries, the best first."""
 
 
 class Pibt(PathPlanning[PibtParameters]):
-    """PIBT: chooses each robot's next run; robots in its way first move aside, if they can."""
+    """PIBT: chooses each robot's next straight run; robots in the way move aside if they can."""
 
     parameters_model = PibtParameters
     planner = "pibt"

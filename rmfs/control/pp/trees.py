@@ -26,8 +26,8 @@ class PbsParameters(TreeParameters):
 class Cbs(PathPlanning[TreeParameters]):
     """CBS (conflict-based search): of two conflicting robots, one gives way.
 
-    Both choices are examined, in a search tree whose most promising node comes first. Paths are
-    planned up to the destinations, without a horizon.
+    A search tree branches on which of the two gives way; its most promising node is examined first.
+    Paths are planned up to the destinations, without a horizon.
     """
 
     parameters_model = TreeParameters
@@ -37,7 +37,8 @@ class Cbs(PathPlanning[TreeParameters]):
 class Pbs(PathPlanning[PbsParameters]):
     """PBS (priority-based search): of two conflicting robots, one plans around the other.
 
-    Both choices can be tried. Only conflicts within a rolling horizon are resolved.
+    A depth-first search tries out which of the two does so, the cheaper choice first. Only
+    conflicts within a rolling horizon are resolved.
     """
 
     parameters_model = PbsParameters

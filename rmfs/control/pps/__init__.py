@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 Requests = Literal["assigned", "assigned-and-completable", "assigned-and-queued"]
 """Orders whose requests count. `assigned`: orders assigned to the station.
-`assigned-and-completable`: also queued orders that the pod completes. `assigned-and-queued`: also
-all queued orders. A request is the need of an order for one unit."""
+`assigned-and-completable`: also orders in its pool that the pod completes. `assigned-and-queued`:
+also all orders in its pool. A request is the need of an order for one unit."""
 
 _REACH: dict[Requests, int] = {
     "assigned": 0,
@@ -31,7 +31,7 @@ _REACH: dict[Requests, int] = {
 
 
 class LateBinding(Parameters):
-    """Parameters of every PPS rule. Queued orders exist only with POA `queue`."""
+    """Parameters of every PPS rule. Orders are queued (in a station's pool) only by POA `queue`."""
 
     late_picks: bool = True
     """Whether units of new orders are bound to a pod that is already on its way to their

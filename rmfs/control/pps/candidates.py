@@ -51,7 +51,7 @@ class Candidates:
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """Return how many of the two, robot and station, are on another tier than each pod, (C,).
+        """Return, for each pod, how many of robot and station (0 to 2) are on another tier, (C,).
 
         If the warehouse has a single tier, the result is the number 0.
         """

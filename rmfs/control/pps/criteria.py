@@ -39,7 +39,7 @@ class PodCriterion(Parameters):
 
 
 class RandomCriterion(PodCriterion):
-    """Prefers a random pod; pods on the tiers of robot and station may come first."""
+    """Prefers a random pod; optionally, pods on the tiers of robot and station come first."""
 
     criterion: Literal["random"] = "random"
     prefer_same_tier: bool = True

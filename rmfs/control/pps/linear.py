@@ -47,7 +47,7 @@ class Linear(PodSelection[LinearParameters]):
     """Chooses the pod, or the next station, with the greatest weighted sum of features.
 
     Ties go to the pod or station with the lowest number. Pods are chosen for assigned orders and
-    for queued orders that they complete, regardless of `consider`.
+    for orders in the station's pool that they complete, regardless of `consider`.
     """
 
     parameters_model = LinearParameters

@@ -39,7 +39,7 @@ class PodStorageAssignment(Controller[P]):
         """Choose an empty storage location (waypoint) for a robot's pod; -1 if there is none."""
 
     def least(self, costs: NDArray[np.float64], among: NDArray[np.bool_]) -> int:
-        """Find the storage location with the least finite cost; ties go to the lowest waypoint.
+        """Find the storage location with the least finite cost; ties: lowest waypoint number.
 
         Parameters
         ----------

@@ -29,13 +29,14 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
 
     The station is the one nearest to the pod by Euclidean distance, even if the pod comes from a
     replenishment station. The pod deserves a place in this station's cache if the weighted mean of
-    two shares is above a threshold: the share of the cache that is free, and the share of its pods
-    that have a lower score.
+    two shares is above a threshold: the share of the cache that is free, and the share of the pods
+    in the cache that have a lower score than this pod.
 
-    A pod that deserves it is stored in this cache; if the cache is full, outside all caches; and if
-    there is no room either, in another cache. Any other pod is stored outside all caches or, if
-    there is no room, in any cache. Among the empty storage locations there, the one nearest to the
-    station is chosen; ties go to the lowest waypoint.
+    A pod that deserves it is stored in this cache; if the cache is full, outside all caches; if all
+    locations outside are occupied, too, in another cache. Any other pod is stored outside all
+    caches or, if all locations outside are occupied, in any cache. Among the empty storage
+    locations of the area chosen, the one nearest to the station is taken; ties go to the waypoint
+    with the lowest number.
     """
 
     parameters_model = CachePlaceParameters

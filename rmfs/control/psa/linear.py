@@ -32,7 +32,7 @@ class LinearParameters(Parameters):
 class Linear(PodStorageAssignment[LinearParameters]):
     """Chooses the empty storage location with the greatest weighted sum of features.
 
-    Ties go to the lowest waypoint.
+    Ties go to the waypoint with the lowest number.
     """
 
     parameters_model = LinearParameters

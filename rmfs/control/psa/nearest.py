@@ -27,7 +27,7 @@ class NearestParameters(Parameters):
 class Nearest(PodStorageAssignment[NearestParameters]):
     """Chooses the nearest empty storage location, by default the one with the least travel time.
 
-    Ties go to the lowest waypoint.
+    Ties go to the waypoint with the lowest number.
     """
 
     parameters_model = NearestParameters

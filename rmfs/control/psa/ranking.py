@@ -52,11 +52,11 @@ class RankParameters(ScoreWeights):
 class Ranking:
     """Ranks pods by score, and finds places of the corresponding rank.
 
-    The P pods are ranked r = 0, 1, ..., the highest score first (ties by number), and the places
-    0, 1, ..., the most prominent first. Pod r belongs on place floor(r x (P + b) / P), or on the
-    last place if there are fewer places. Here b is the share `place_buffer` of the number of
-    places, rounded down. The rank of that place is the pod's target; places of equal prominence
-    share a rank.
+    The P pods are sorted by score, the highest first (ties by number), and the places by
+    prominence, the most prominent first; both are counted from 0. Pod r in this sequence belongs on
+    place floor(r x (P + b) / P), or on the last place if there are fewer places. Here b is the
+    share `place_buffer` of the number of places, rounded down. The rank of that place is the pod's
+    target; places of equal prominence share a rank.
     """
 
     def __init__(self, view: View, parameters: RankParameters) -> None:

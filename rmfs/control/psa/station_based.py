@@ -27,9 +27,9 @@ class StationBasedParameters(Parameters):
 
 
 class StationBased(PodStorageAssignment[StationBasedParameters]):
-    """Chooses the empty storage location nearest to any station, wherever the pod is.
+    """Chooses the empty storage location nearest to any station of a kind, wherever the pod is.
 
-    Ties go to the lowest waypoint.
+    Ties go to the waypoint with the lowest number.
     """
 
     parameters_model = StationBasedParameters

@@ -33,8 +33,8 @@ class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):
     """Chooses an empty storage location of the pod's turnover class, or else of another class.
 
     If the class has no empty location, the next slower class is tried, then the next faster one,
-    then the class after the next slower one, and so on. Ties within a class go to the lowest
-    waypoint.
+    then the class after the next slower one, and so on. Ties within a class go to the
+    waypoint with the lowest number.
     """
 
     parameters_model = TurnoverPlaceParameters

@@ -20,7 +20,7 @@ class Utility(PodStorageAssignment[RankParameters]):
 
     Places are storage locations; the most prominent one is nearest to a pick station. The rule
     searches ranks outward from the pod's target rank. Of the empty places found, it chooses the one
-    with the least travel time from the robot; ties go to the lowest waypoint.
+    with the least travel time from the robot; ties go to the lowest waypoint number.
     """
 
     parameters_model = RankParameters

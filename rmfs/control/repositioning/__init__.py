@@ -30,7 +30,7 @@ class Move(NamedTuple):
 
 
 def nearest_place(view: View, pod: int, among: NDArray[np.bool_], metric: Metric) -> int:
-    """Find the storage location nearest to that of a pod; ties go to the lowest waypoint.
+    """Find the storage location nearest to that of a pod; ties go to the lowest waypoint number.
 
     Parameters
     ----------

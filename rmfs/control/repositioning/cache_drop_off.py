@@ -34,13 +34,14 @@ class CacheDropOff(Pausing[CacheDropOffParameters]):
     """Clears drop-off zones, then fills or thins out the caches.
 
     Stations are considered in order of the absolute difference between the number of occupied
-    storage locations in their cache and its target, the largest first. If a drop-off zone holds
-    pods, the pod with the highest score is moved: into the cache of the station if it deserves a
-    place there (as in PSA `cache`) and there is room, and otherwise outside all zones.
+    storage locations in their cache and its target, the largest first. If the drop-off zone of a
+    station holds pods, the one with the highest score is moved: into the cache of the station if it
+    deserves a place there (as in PSA `cache`) and there is room, and otherwise outside all zones.
 
     If no pod in a drop-off zone can be moved, the caches are considered. If a cache has too few
-    pods, the pod with the highest score outside all zones is moved in, provided that it deserves a
-    place. If a cache has too many, its pod with the lowest score is moved outside all zones.
+    pods, the pod outside all zones that has the highest score is moved in, provided that it
+    deserves a place. If a cache has too many, its pod with the lowest score is moved outside all
+    zones.
     Nothing is moved into a drop-off zone. A pod goes to the nearest storage location of its new
     zone; ties go to the lowest number.
     """

@@ -25,13 +25,13 @@ class UtilityParameters(RankParameters, Pauses):
 
 
 class Utility(Pausing[UtilityParameters]):
-    """Moves the pod with the largest distance between the rank of its place and its target rank.
+    """Moves the pod with the largest difference between the rank of its place and its target rank.
 
     Pods and places (storage locations) are ranked as in PSA `utility`, and empty places are
     searched outward from the pod's target rank in the same way. Of the places found, the one
-    nearest to the pod by Manhattan distance is chosen; ties go to the lowest waypoint. The pod is
-    moved only if this brings it closer to its target rank. Otherwise, the pod with the next largest
-    distance is tried, up to eight pods. Ties go to the pod with the lowest number.
+    nearest to the pod by Manhattan distance is chosen; ties go to the waypoint with the lowest
+    number. The pod is moved only if this reduces the difference. Otherwise, the pod with the next
+    largest difference is tried, up to eight pods. Ties go to the pod with the lowest number.
     """
 
     parameters_model = UtilityParameters

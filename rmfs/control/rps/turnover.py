@@ -23,8 +23,8 @@ class TurnoverPodParameters(TurnoverParameters):
     """Parameters of RPS turnover."""
 
     emptiest: bool = True
-    """Whether the pod of a class with the lowest share of its capacity used or promised is chosen;
-    otherwise, a pod is drawn."""
+    """Whether, within a class, the pod with the lowest share of its capacity used or promised is
+    chosen; otherwise, a pod is drawn."""
     buffer_thresholds: tuple[Share, ...] = (0.8, 0.8, 0.8)
     """For each class: the bundles promised to a pod are released to ROA when this share of its
     capacity is used or promised."""

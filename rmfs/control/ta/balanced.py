@@ -86,7 +86,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return goals
 
     def may_work(self, robot: Robot, station: int) -> bool:
-        """Return whether a station has fewer robots than its limit, without counting this one."""
+        """Return whether a station has fewer robots than its limit, without counting this robot."""
         return station >= 0 and self.workers(station, robot) < self.parameters.robots_per_station
 
     def stations_for(self, robot: Robot) -> Sequence[int]:

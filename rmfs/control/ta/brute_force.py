@@ -52,8 +52,8 @@ class BruteForce(Solo[BruteForceParameters]):
 
     If the best pod is not the carried one, the carried pod is parked at the storage location with
     the least time to drive there plus the straight trip on to the other pod. The robot then fetches
-    the other pod; if another robot has taken it meanwhile, the robot searches again.
-    Without work, pods are parked at the nearest empty location. The rule chooses pods and storage
+    the other pod; if another robot has taken it meanwhile, the robot searches again. If there is no
+    work, a carried pod is parked at the nearest empty location. The rule chooses pods and storage
     locations itself, so PPS and PSA must be `dummy`; bundles go into the pods chosen by RPS.
     """
 

@@ -28,8 +28,8 @@ class RestPlaces:
     rule
         `middle`: the location nearest to the middle of the robot's tier (Merschformann, Xie and Li
         2018, section 3.1.1); `nearest`: the location nearest to the robot by Euclidean distance,
-        possibly on another tier (ties go to the lowest waypoint); `random`: a location drawn from
-        those on the robot's tier.
+        possibly on another tier (ties go to the waypoint with the lowest number); `random`: a
+        location drawn from those on the robot's tier.
     draw
         Function that draws an integer below its argument, for `random`.
     """

@@ -191,7 +191,7 @@ class StationTeams(TaskAllocation[P]):
         self._works_for[robot.index] = station
 
     def workers(self, station: int, besides: Robot) -> int:
-        """Return the number of robots that work for a station, without counting `besides`."""
+        """Return the number of robots that work for a station, without counting robot `besides`."""
         return self._workers[station] - (self._works_for[besides.index] == station)
 
     def _to_rest(self, robot: Robot) -> Rest:

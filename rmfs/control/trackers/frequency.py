@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Frequency(Tracker):
-    """Number of units ordered of each SKU, in past orders and since time zero."""
+    """Number of units ordered of each SKU, in orders from before the run and since time zero."""
 
     def __init__(self, view: View) -> None:
         super().__init__(view)
@@ -43,7 +43,8 @@ class Frequency(Tracker):
 class PairFrequency(Tracker):
     """For each pair of SKUs, the number of orders that contain both.
 
-    It counts past orders, the backlog when the tracker starts, and orders that arrive afterwards.
+    It counts orders from before the run, the backlog when the tracker starts, and orders that
+    arrive afterwards.
     """
 
     hears = frozenset({Trigger.NEW_ORDER})

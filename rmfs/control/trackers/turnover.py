@@ -23,8 +23,8 @@ class TurnoverParameters(Parameters):
     """Parameters of turnover classes; they must be equal in rules that work together (RPS, PSA)."""
 
     class_borders: Annotated[tuple[float, ...], pydantic.Field(min_length=1)] = (0.1, 0.3, 1.0)
-    """Shares of the storage locations, nearest to pick stations first, at which each class ends.
-    They are cumulative; the last is 1."""
+    """End of each class, as a cumulative share of the storage locations in order of their distance
+    to the nearest pick station; the last is 1."""
     place_metric: Metric = "time"
     """Measure of the distance from a storage location to its nearest pick station."""
     reallocation_period_s: Annotated[float, pydantic.Field(ge=0)] = 0.0
@@ -59,10 +59,10 @@ class TurnoverClasses(Tracker):
       unit in the sum of the spaces per unit of all SKUs. A class takes SKUs until their total
       weight reaches the share of its pods in the capacity of all pods.
 
-    Units are counted since the last classification; the first one also counts past orders. Pods and
-    SKUs are classified when a rule first requests the tracker. They are reclassified on the first
-    access after the period has passed, or the number of orders has been reached. Locations keep
-    their class.
+    Units are counted since the last classification; the first classification also counts orders
+    from before the run. Pods and SKUs are classified when a rule first requests the tracker. They
+    are reclassified on the first access after the period has passed, or the number of orders has
+    been reached. Locations keep their class.
 
     Attributes
     ----------

@@ -24,7 +24,9 @@ class ZoneParameters(Parameters):
     """Parameters of zones; they must be equal in rules that work together (PSA, repositioning)."""
 
     cache_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.25
-    """Share of all storage locations used for caches, divided equally among the pick stations."""
+    """Share of all storage locations that belong to caches. The cache of a pick station consists of
+    storage locations from which a robot with a pod reaches the station fastest; all caches are
+    equally large."""
     drop_off_places: Annotated[int, pydantic.Field(ge=0)] = 0
     """Number of storage locations in the drop-off zone of each pick station: those that a robot
     with a pod reaches fastest from the station."""
@@ -54,7 +56,7 @@ class Zones(Tracker):
     cache_of, drop_off_of
         Pick station to whose cache, or drop-off zone, each place belongs, or -1, shape (L,).
     cache_size
-        Number of places of each cache, shape (S,); less than specified if there are too few.
+        Number of places of each cache, shape (S,); less than specified if too few are left.
     caches
         For each pick station, the indices of the places of its cache.
     """

@@ -20,8 +20,8 @@ MARGIN_M = 0.5
 _FLOOR, _TAPE = 170, 35
 
 NEAR_M, DEEP_M, WIDE_M = 0.17, 0.12, 0.24
-"""Field of view of a camera, in m: distance of its near edge ahead of the robot's centre, depth,
-and width."""
+"""Field of view of a camera, in m: distance from the robot's centre to the near edge of the field,
+depth, and width."""
 IMAGE = (64, 32)
 """Width and height of an image, in pixels."""
 

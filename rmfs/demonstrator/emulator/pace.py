@@ -50,7 +50,7 @@ class RealTime:
 
 
 class InStep:
-    """Synchronous timing: the room keeps the clock, and the server processes tick by tick.
+    """Synchronous timing: the room keeps the clock and waits for the server after each tick.
 
     Parameters
     ----------

@@ -177,12 +177,15 @@ class Room:
     # --- what goes over the wires -------------------------------------------------------------
 
     def sent(self) -> dict[str, int]:
-        """Return the number of bytes that each connected robot has sent, by its name."""
+        """Return the number of bytes sent by each connected robot, by name of the robot."""
         wires = {name: robot.wire for name, robot in self.robots.items()}
         return {name: wire.written for name, wire in wires.items() if wire and not wire.is_closed}
 
     def fetch(self, sizes: dict[str, int]) -> None:
-        """Wait until robots have received given numbers of bytes, or nothing arrived for 0.5 s."""
+        """Wait until robots have received these numbers of bytes.
+
+        Waiting for a robot also ends if nothing has arrived for 0.5 s.
+        """
         for name, size in sizes.items():
             wire = self.robots[name].wire if name in self.robots else None
             if wire is not None:

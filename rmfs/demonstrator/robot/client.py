@@ -136,7 +136,7 @@ class Link:
             return []
 
     def send(self, message: Message) -> bool:
-        """Queue a message for the server; return false if there is no session to send it."""
+        """Queue a message for the server; return false if there is no session."""
         if self._channel is None:
             return False
         self._channel.send(message)

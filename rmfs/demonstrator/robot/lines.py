@@ -60,13 +60,13 @@ class LineSettings:
     erode_px
         Side of the square used for erosion, in pixels.
     smallest_share
-        Smallest area of a contour, as a share of the image.
+        Smallest area of a contour that can be a line, as a share of the image.
     widest_share
-        Largest width of the lower end, as a share of the image's width. A wider contour is a line
-        that crosses the robot's line.
+        Largest width of the line's lower end, as a share of the image's width. A wider contour is a
+        line that crosses the robot's line.
     lower_share
         Height of the lower part of the image into which the line must reach, as a share of the
-        image.
+        image's height.
     """
 
     lowest: tuple[int, int, int] = (0, 0, 0)

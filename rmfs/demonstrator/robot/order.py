@@ -38,8 +38,8 @@ class Order:
     since
         Wheel counters read at the beginning of the turn, or at the last waypoint reached.
     ahead_m
-        Distance in m of the robot past the last waypoint reached when `since` was read; negative if
-        the robot was before the waypoint.
+        How far, in m, the robot was past the last waypoint reached, at the time when `since` was
+        read; negative if it was before the waypoint.
     """
 
     number: int

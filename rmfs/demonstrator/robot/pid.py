@@ -12,8 +12,9 @@ class Pid:
     Attributes
     ----------
     proportional, integral, derivative
-        Weights of the error, of its integral over time and of its derivative, in units of the
-        output per unit of the error, and additionally 1/s and s for the latter two.
+        Weights of the error, of its integral over time and of its derivative. Their unit is that of
+        the output per unit of the error, multiplied by 1/s for `integral` and by s for
+        `derivative`.
     limit
         Limit of the absolute output; while it is exceeded, the integral is not updated.
     """

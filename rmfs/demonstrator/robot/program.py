@@ -44,8 +44,8 @@ class Settings:
     blind_m
         Maximum distance that the robot drives without seeing a line.
     search_m, searches
-        Length of the stretch in which a missed tag is searched for, which ends `overshoot_m` past
-        the expected position, and maximum number of searches.
+        Length of the stretch in which a missed tag is searched for (it ends `overshoot_m` past the
+        expected position of the tag), and maximum number of searches.
     steering
         Weights and limit of the PID controller (`Pid`), which turns the offset in m into an angular
         speed in rad/s.

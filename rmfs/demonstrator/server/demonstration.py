@@ -36,8 +36,8 @@ class Demonstration:
     tags
         The tag of every waypoint.
     journal
-        File of received messages. If it exists, the run repeats its messages and continues from
-        there.
+        File of received messages. If it exists, the run first processes the messages in it again
+        and then continues.
     is_emulated
         Whether the robots are in an emulated room, which keeps the clock.
     past_failure

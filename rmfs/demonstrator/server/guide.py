@@ -51,7 +51,7 @@ class Guide:
     layout
         A layout that `check_floor` accepts.
     traffic
-        Plans for all robots.
+        The traffic layer, which holds the plans of all robots.
     robots
         Indices of the real robots; the others are simulated.
     tags
@@ -87,8 +87,8 @@ class Guide:
         silent
             Robots that are silent although they have a session.
         regroups
-            Whether plans may be made anew now; otherwise, this waits for a later tick. Default:
-            True.
+            Whether plans may be made anew in this tick; if not, plans that are due to be made
+            anew wait for a later tick. Default: True.
 
         Returns
         -------

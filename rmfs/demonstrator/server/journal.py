@@ -1,9 +1,9 @@
 """A journal of received messages, tick by tick, so that a killed server can resume.
 
 A server that is restarted with its journal repeats the demonstration as fast as it can. It reaches
-the same state, because it receives the same messages and all its random draws are seeded. If the
-server had failed, it would fail again at the same tick. Therefore this tick is marked, and its
-messages can be omitted; none of the orders of the tick has been sent.
+the same state, because it receives the same messages and all its random draws are seeded. After a
+failure of the server itself, it would therefore fail again at the same tick. Such a tick is marked,
+and its messages can be omitted; none of the orders of the tick has been sent.
 """
 
 from __future__ import annotations

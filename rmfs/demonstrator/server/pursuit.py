@@ -31,7 +31,7 @@ class Pursuit:
     heading_before_rad
         Heading of the robot, in rad, before the turn.
     waypoints
-        Waypoints of the run, without its start.
+        Waypoints of the straight run, without its start.
     along_m
         Distance of each waypoint from the start, in m.
     passed
@@ -142,7 +142,7 @@ def _course(
 
 
 def quarter_turns(before_rad: float, after_rad: float) -> int:
-    """Return the anticlockwise turn between two headings in rad, in quarters (0 to 3)."""
+    """Return the anticlockwise turn from one heading (rad) to another, as 0 to 3 quarter turns."""
     return round((after_rad - before_rad) / (math.pi / 2)) % 4
 
 

@@ -24,10 +24,10 @@ CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 def check(layout: Layout) -> list[Violation]:
     """Return all violations of a layout, those with severity "impossible" first.
 
-    The following is checked: there are robots, and stations of both kinds; every storage
-    location, station and elevator can be reached and left, with and without load; the aisles are
-    strongly connected; queue lists are chains; every robot has a place to rest; bodies stay apart;
-    and the conditions W1-W3 of deadlock freedom hold (docs/safety.md).
+    The following is checked: there are robots, pick stations and replenishment stations; every
+    storage location, station and elevator can be reached and left, with and without load; the
+    aisles are strongly connected; queue lists are chains; every robot has a place to rest; bodies
+    stay apart; and the conditions W1-W3 of deadlock freedom hold (docs/safety.md).
     """
     found = [violation for checks in CHECKS for violation in checks(layout)]
     return sorted(found, key=lambda violation: violation.severity != IMPOSSIBLE)

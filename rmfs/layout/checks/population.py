@@ -1,4 +1,4 @@
-"""Checks that a layout has robots, and stations of both kinds."""
+"""Checks that a layout has robots, pick stations and replenishment stations."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def population(layout: Layout) -> Iterator[Violation]:
-    """Yield a violation for each kind that is missing: robots, pick and replenishment stations."""
+    """Yield a violation for each that is missing: robots, pick stations, replenishment stations."""
     counts = {
         "robots": layout.robots,
         "pick stations": len(layout.pick_stations),

@@ -1,4 +1,4 @@
-"""Checks that queue lists are queues: chains of private places, each leading to the head (W3).
+"""Checks that queue lists are queues: chains of unshared places that lead to the head (W3).
 
 W3 of the deadlock argument requires that a station admits no more robots than its queue has places.
 Traffic grants places one by one and lets all other robots wait where they are, so the number of
@@ -59,7 +59,7 @@ class Queue:
 
 
 def all_queues(layout: Layout) -> list[Queue]:
-    """Return the queue of each station and elevator; an empty list becomes a queue of its head."""
+    """Return the queue of each station and elevator; if its list is empty, the head alone."""
     queues = [
         Queue(
             station_label(layout, s),

@@ -31,8 +31,8 @@ LONG = 3.0
 """Edges longer than this multiple of the median length are compared with all others one by one."""
 
 GRID_TOLERANCE = 1e-6
-"""Share of the width of a regular grid by which this width must exceed the required distance.
-Positions may be off the grid by an eighth of this share of the width."""
+"""Share of the spacing of a regular grid by which the spacing must exceed the required distance.
+Positions may be off the grid by an eighth of this share of the spacing."""
 
 
 def separation(layout: Layout) -> Iterator[Violation]:

@@ -46,7 +46,7 @@ def build(table: Table, source: str, folder: Path | None = None) -> Layout:
     Parameters
     ----------
     table
-        As in the JSON file.
+        The contents of the file, as parsed from JSON.
     source
         Name of the file, for messages.
     folder

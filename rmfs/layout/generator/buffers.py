@@ -34,7 +34,7 @@ class Buffer:
     entrances
         Edges that lead into the zone from tiles of the hall: one for every second segment.
     steps
-        All other directed edges that begin inside the zone.
+        All directed edges that begin inside the zone.
     """
 
     site: Site

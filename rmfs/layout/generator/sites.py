@@ -1,8 +1,8 @@
 """Where stations and elevators stand along the sides of a tier.
 
-RAWSim-O default layout: possible exits lie opposite the aisles that run inward. The stations of a
-side take those in the middle, in this order: pick stations, replenishment stations, other kinds,
-elevators.
+RAWSim-O default layout: robots can leave the buffer of a station only opposite an aisle that runs
+inward. Of these possible exits on a side, those in the middle are taken, in this order, by pick
+stations, replenishment stations, stations of other kinds, and elevators.
 """
 
 from __future__ import annotations

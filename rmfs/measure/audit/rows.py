@@ -60,7 +60,7 @@ class Rows:
         return self.taken(np.isin(self.kind, kinds))
 
     def tell(self, row: int, what: str) -> str:
-        """Return a line that describes an event."""
+        """Return a line about a faulty event: its time, row and kind, and `what` is wrong."""
         kind = KINDS[int(self.kind[row])]
         return f"{self.time_us[row] / 1e6:.6f} s, row {self.number[row]} ({kind}): {what}"
 

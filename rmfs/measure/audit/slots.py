@@ -1,4 +1,4 @@
-"""Audit of slots of pick stations: how many are in use, and that no order bypasses them."""
+"""Audit of the order slots of pick stations: how many are in use, and by which orders."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ KINDS = (
 
 
 def check(layout: Layout, rows: Rows) -> Chapter:
-    """Check that a pick station never has more open orders than slots, and picks only for these.
+    """Check that no pick station has more open orders than slots, or picks for any other order.
 
     Also checks that no order is assigned to a station that is switched off.
     """

@@ -20,7 +20,9 @@ HAIR = 1e-6
 
 
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame, pods: pd.DataFrame) -> Chapter:
-    """Check that no pod lacks a picked unit or exceeds its capacity, and check the final stock.
+    """Check the stock on pods over time, and the final stock.
+
+    A pod must hold every unit that is picked from it, and must not exceed its capacity.
 
     Parameters
     ----------

@@ -6,7 +6,7 @@ every moment, as pieces of constant acceleration, and proves on these (without s
 
 * each trace is gapless and continuous, within the robot's kinematics, along edges and elevators
   that exist (`continuity`);
-* no two robot discs overlap on a tier; a robot that carries a pod is as large as the pod
+* no two robot discs overlap on a tier; a robot that carries a larger pod is as large as the pod
   (`sweep` finds nearby pairs, `distance` bounds their distance from below, `separation`);
 * pods are conserved, never share a place, and no carried pod touches a stored one (`pods`);
 * a queue place and an elevator each hold at most one robot (`occupancy`).
@@ -50,8 +50,8 @@ def check(
         it may end later or be cut short. Default: the start of the last motion.
     slow
         Periods in which robots are limited to a share of their top speed; outside these periods,
-        they are not. Default: periods are not checked, and each run is limited to the top speed
-        stated in the trace, which must not exceed that of the robot.
+        they are not. Default: periods are not checked, and each straight run is limited to the
+        top speed stated for it in the trace, which must not exceed that of the robot.
 
     Raises
     ------

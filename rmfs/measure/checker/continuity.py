@@ -162,7 +162,7 @@ def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) 
 
 
 def speeds(trace: Trace, limits: Kinematics) -> list[Finding]:
-    """Compare the top speed stated for each run with the limit; a trace without speeds passes."""
+    """Compare the top speed stated for each straight run with the limit; without speeds, pass."""
     if trace.top_speed_m_s is None:
         return []
     off = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s - limits.top_speed_m_s, 0.0)

@@ -1,11 +1,11 @@
 """Positions over time: a trace divided into pieces of constant acceleration.
 
-This follows from physics alone: a robot accelerates from rest at the rate a to the speed v, keeps
-it, and brakes at the rate d to rest. Over a distance L the highest speed is
+The pieces follow from physics alone: a robot accelerates from rest at the rate a to the speed v,
+keeps this speed, and brakes at the rate d to rest. Over a distance L the highest speed is
 
     v = min(top speed, sqrt(2 L a d / (a + d)))
 
-and the run lasts v/a + (L - v²/2a - v²/2d)/v + v/d.
+and the straight run lasts v/a + (L - v²/2a - v²/2d)/v + v/d.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEGLIGIBLE_S = 2e-6
-"""Duration, in s, below which a rest at the end of a run is due to rounding and gets no piece."""
+"""Duration, in s, below which a standstill at the end of a straight run is due to rounding and gets
+no piece."""
 
 
 @dataclass(frozen=True, slots=True)

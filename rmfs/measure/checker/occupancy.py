@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def check(layout: Layout, trace: Trace) -> list[Finding]:
-    """Find robots that stand on one queue place, or use one elevator, at the same time."""
+    """Find robots that stand on the same queue place or use the same elevator at the same time."""
     standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE) & (trace.from_wp == trace.to_wp)
     queue_place = np.where(layout.is_queue, np.arange(layout.waypoints), -1)
     elevator = np.full(layout.waypoints, -1)

@@ -96,7 +96,7 @@ def _windows(pieces: Pieces, robots: int) -> Iterator[tuple[int, int]]:
 
 
 def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -> Boxes:
-    """Divide each piece at the slab borders, and return boxes enlarged by its radius.
+    """Divide each piece at the slab borders, and return boxes enlarged by the radius of the piece.
 
     A piece follows a straight line in one direction, so its end points bound it.
 

@@ -47,7 +47,7 @@ COLUMNS = {
 """The columns of a trace, with the types used by the checker."""
 
 TOP_SPEED = "top_speed_m_s"
-"""Column with the top speed of each run: that of the robot, or less while it is slow."""
+"""Column with the top speed of each straight run: that of the robot, or less while it is slow."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +59,8 @@ class Trace:
     robot, t0_us, t1_us, kind, from_wp, to_wp, heading0_rad, heading1_rad, pod
         The columns, each of shape (K,).
     top_speed_m_s
-        Top speed of each run; None if the trace does not contain it, so that all robots drive at
-        their own top speed.
+        Top speed of each straight run; None if the trace does not contain it, so that all robots
+        drive at their own top speed.
     """
 
     robot: NDArray[np.int64]
@@ -93,7 +93,7 @@ class Trace:
     def end_us(self) -> int:
         """Time up to which every robot must be covered: the start of the last motion.
 
-        A turn and the run after it count as one motion.
+        A turn and the straight run after it count as one motion.
         """
         begins = self.t0_us.copy()
         follows = self.follows & (self.kind[:-1] == Motion.TURN)

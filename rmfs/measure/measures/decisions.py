@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from rmfs.measure.ended import EndedRun
 
 SOURCES = {
-    "optimiser": "by solutions of optimisers",
+    "optimiser": "based on solutions of optimisers",
     "heuristic": "taken by controllers' own rules although they ask optimisers",
-    "stale": "of solutions that were no longer valid",
+    "stale": "proposed by optimisers but no longer valid",
     "failed": "taken by controllers' own rules because an optimiser failed or found nothing",
 }
 """Sources of decisions in runs with optimisers, each with its description."""
@@ -59,7 +59,7 @@ class Decisions(Measure):
 
 
 class Optimisers(Measure):
-    """Number, gaps, delays and wall times of questions to optimisers."""
+    """Number, optimality gaps, delays and wall times of questions to optimisers."""
 
     columns = (
         Column("optimiser_calls", INTEGER, "calls", "Questions to optimisers"),
@@ -111,7 +111,7 @@ class Optimisers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return number, gaps, delays, failures and wall times of questions to optimisers."""
+        """Return number, optimality gaps, delays, failures and wall times of the questions."""
         decisions = run.tables["decisions"]
         asked = decisions[decisions["source"] == "optimiser"]
         return {

@@ -27,8 +27,8 @@ class Delays(Measure):
             REAL,
             "share",
             f"Share of the turnover of all completed orders: {what}. The times of a "
-            "line are those of its last unit, those of an order the means over its lines; empty if "
-            "no order was completed",
+            "line are those of its last unit; the times of an order are the means over its lines; "
+            "empty if no order was completed",
             better=LESS if part in _LESS else NEITHER,
         )
         for part, what in PARTS.items()

@@ -1,4 +1,4 @@
-"""Identification of the run: the columns that distinguish it from others."""
+"""Identification of the run: the columns that distinguish it from other runs."""
 
 from __future__ import annotations
 

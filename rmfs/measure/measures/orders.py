@@ -108,7 +108,8 @@ class Backlog(Measure):
             "orders_short",
             INTEGER,
             "orders",
-            "Orders that needed more units of a SKU on arrival than earlier orders left in stock",
+            "Orders that, on arrival, needed more units of a SKU than were in stock and not needed "
+            "by earlier orders",
             better=LESS,
         ),
     )

@@ -83,7 +83,8 @@ class Packing(Measure):
             "totes_held_mean",
             REAL,
             "totes",
-            "Time average of totes that could not leave pick stations, which block slots there",
+            "Time average of the number of totes that cannot leave pick stations and therefore "
+            "block slots there",
             better=LESS,
         ),
         Column(
@@ -158,7 +159,7 @@ def slots_in_use(totes: pd.DataFrame, *, per_part: bool) -> Steps:
     totes
         The table `totes`.
     per_part
-        Whether each part takes a slot, or all parts of an order share one.
+        Whether each part of an order takes a slot of its own; if not, all its parts share one.
     """
     there = totes[totes["arrived_s"].notna()]
     if not per_part:

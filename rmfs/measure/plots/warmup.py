@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def warmup(series: pd.DataFrame, ax: Axes, *, column: str = "units_picked") -> None:
-    """Plot a rate minute by minute, its moving average, and the warm-ups of MSER-5 and Welch.
+    """Plot a rate per minute, its moving average, and the warm-ups proposed by MSER-5 and Welch.
 
     The warm-up is not recorded in the series, so use a run with `warmup_s = 0`.
 

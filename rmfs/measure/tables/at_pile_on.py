@@ -20,8 +20,8 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
     is `unit_transfer_s` and K is `unit_pick_s`. The last one occupies the robot for K; then the
     robot leaves. The next robot arrives at least a time c later (`change_s`); its first pick starts
     only when the station's time T for the last unit is over, too. A visit therefore lasts at least
-    (p - 1) max(T, K) + max(T, K + c). This is linear in p, so the mean pile-on gives a bound on the
-    mean.
+    (p - 1) max(T, K) + max(T, K + c). This is linear in p, so the mean pile-on gives a lower bound
+    on the mean duration of a visit.
 
     Parameters
     ----------

@@ -76,13 +76,16 @@ DECISIONS = (
         "built",
         REAL,
         "",
-        "Number of entries of the solver's model that were built; building is not part of `work`",
+        "Size of the solver's model (nonzeros); building it is not part of `work`",
     ),
     Column("build_s", REAL, "s", "Wall time of building the solver's model", measured=True),
     Column("solve_s", REAL, "s", "Wall time of the solver without building", measured=True),
     Column("applied", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were applied"),
     Column(
-        "stale", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were no longer valid"
+        "stale",
+        COUNT_OR_EMPTY,
+        "decisions",
+        "Decisions proposed by the solution but no longer valid",
     ),
     Column(
         "fallback",
@@ -111,9 +114,14 @@ ANSWERS = (
         "built",
         REAL,
         "",
-        "Number of entries of the solver's model that were built; building is not part of `work`",
+        "Size of the solver's model (nonzeros); building it is not part of `work`",
     ),
-    Column("scale", REAL, "", "Divisor of the relative gap; if empty, it is abs(objective)"),
+    Column(
+        "scale",
+        REAL,
+        "",
+        "Number by which the absolute gap is divided to make it relative; if empty, abs(objective)",
+    ),
     Column("wall_s", REAL, "s", "Wall time of solver and building", measured=True),
     Column("build_s", REAL, "s", "Wall time of building", measured=True),
     Column("solution", TEXT, "", "The solution as JSON; empty without one"),
@@ -136,7 +144,10 @@ CONTROLLERS = (
         "Decisions made by the controller's own rule; 0 if it never asks optimisers",
     ),
     Column(
-        "stale_decisions", INTEGER, "decisions", "Decisions of solutions that were no longer valid"
+        "stale_decisions",
+        INTEGER,
+        "decisions",
+        "Decisions proposed by optimisers but no longer valid",
     ),
     Column(
         "failed_decisions",

@@ -42,7 +42,7 @@ PARTS = {
     "service": "service at the station, until the last unit of the line was handled",
     "wait_order": "waiting at the slot for the other lines of the order",
 }
-"""The parts of the time of an order line, in chronological order."""
+"""The parts of the time of an order line, roughly in chronological order."""
 
 DELAYS = (
     Column("order", INTEGER, "", "Ordinal of arrival of the order"),

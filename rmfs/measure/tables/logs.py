@@ -46,7 +46,7 @@ class Logs:
 
     @cached_property
     def picks_by_hand(self) -> pd.DataFrame:
-        """How pickers handled each row of `units_now`; empty without pickers."""
+        """How pickers handled each unit in `units_now`; empty without pickers."""
         told = framed(self.recorder.pickers.units)
         return told.iloc[len(self.units) - len(self.units_now) :].reset_index(drop=True)
 
@@ -132,7 +132,8 @@ class Logs:
     def visits(self) -> pd.DataFrame:
         """Visits of pods to stations, with the `units` and `bundles` handled in the measured time.
 
-        Each unit or bundle belongs to the last visit to its station that had started by then.
+        Each unit or bundle belongs to the latest visit to its station that had started when it was
+        handled.
         """
         frame = framed(self.recorder.visits)
         frame = frame.sort_values(["station", "begin_s"], ignore_index=True)

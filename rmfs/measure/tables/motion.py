@@ -68,7 +68,7 @@ _PURPOSES = {
     "pick": "on the way to a pick station (including the way to the pod), or at one",
     "replenish": "on the way to a replenishment station (including the way to the pod), or at one",
     "store": "carrying or fetching a pod for another purpose",
-    "rest": "without a pod or a task for one",
+    "rest": "with neither a pod nor a task that involves one",
 }
 
 HEAT = (

@@ -1,4 +1,4 @@
-"""The table of order lines read from a file, with all columns of the file."""
+"""The table `order_lines`: lines that were read from a file, with all columns of the file."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ORDER_LINES = (
 
 
 def order_lines(logs: Logs) -> pd.DataFrame:
-    """Make a row for every line of orders in the table of orders that come from a file."""
+    """Make a row per line of each order that comes from a file and is in the table of orders."""
     stream = logs.recorder.order_stream
     orders = seen(logs)
     orders = orders[orders["in_file"] >= 0]

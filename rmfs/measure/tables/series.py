@@ -83,7 +83,8 @@ SERIES = (
             "transfer": "lifting or setting down",
             "riding": "in an elevator",
             "idle": "standing idle",
-            "queueing": "between a queue zone's border and its station (overlaps with the others)",
+            "queueing": "between a queue zone's border and its station (also counted in the "
+            "other columns)",
         }.items()
     ),
     Column(

@@ -75,4 +75,4 @@ def _of_type(column: Any, dtype: Any, rows: int) -> Any:
 
 
 _PLAIN = {np.dtype(np.float64): float, np.dtype(np.int64): int}
-"""For each column type, the type of single values that need no checks to be converted to it."""
+"""For each column type, the Python type whose values it can store without a check."""

@@ -80,7 +80,8 @@ _SCORES = {
     "Deadline": "due-time",
     "AvailablePicks": "matches",
 }
-"""Score functions by suffix of their name; of two that match, the longer comes first."""
+"""Score functions by the suffix of their name in RAWSim-O. The first match counts, so
+`NotDepletePod` comes before `DepletePod`."""
 
 _CRITERIA = {
     "VacantDeadline": Rule("due-soon", {"": Number("within_s", 600.0)}),
@@ -94,7 +95,7 @@ _CRITERIA = {
     "Random": Rule("random"),
 }
 """Criteria of POA `queue`, by the word that stands for each in the name of RAWSim-O's type. A
-criterion has at most one parameter, which is the only element of this type."""
+block of such a type has at most one element, the parameter of the criterion."""
 
 ROA = {
     "Random": Rule(

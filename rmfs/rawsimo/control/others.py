@@ -59,7 +59,7 @@ def mm(kind: str, block: Settings) -> Table:
     Raises
     ------
     InputError
-        If it names a pod storage rule that RAWSim-O itself cannot exchange.
+        If the block names a pod storage rule that RAWSim-O itself cannot exchange.
     """
     if kind == "Random":
         exchanges = block.switch("ExchangePodStorage", default=True)

@@ -101,7 +101,8 @@ PP = (*_RULES, "Simple", "Dummy")
 def pp(kind: str, block: Settings) -> Table:
     """Return our table `pp` that corresponds to a path planning method of RAWSim-O.
 
-    With methods that rmfs also has, a robot is granted one straight run at a time, as in RAWSim-O.
+    With methods that rmfs also has, a robot is granted one straight stretch of its path at a time,
+    as in RAWSim-O.
     """
     if kind in _RULES:
         return {**translated(block, _RULES[kind]), "runs_granted": 1}

@@ -22,7 +22,7 @@ _ROBOT_KIND = {
     "PodTransferTime": "pod_transfer_s",
 }
 _POD_RADIUS_M = 0.45
-"""Radius of pods in a layout without pods (RAWSim-O's default)."""
+"""Radius assumed for pods if the file contains none (RAWSim-O's default)."""
 
 
 def pods(

@@ -96,7 +96,7 @@ class Instance:
         return (Fields(element, self.problems) for element in self._elements[kind])
 
     def has(self, kind: str, name: int) -> bool:
-        """Return whether there is an element of a kind with the id `name`."""
+        """Return whether any element of a kind has the id `name`."""
         return name in self._index[kind]
 
     def position(self, kind: str, name: int, where: str) -> int:

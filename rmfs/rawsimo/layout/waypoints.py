@@ -80,7 +80,7 @@ def add_edges(instance: Instance, waypoints: list[Table], rides: set[tuple[int, 
     Parameters
     ----------
     waypoints
-        As returned by `waypoints`; each gets its `to`.
+        As returned by `waypoints`; this function fills in their key `to`.
     rides
         Pairs of waypoints joined by an elevator.
     """

@@ -1,4 +1,4 @@
-"""Conversion of the block of a settings file that changes the layout."""
+"""Conversion of a settings file's block of changes to the layout."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ _COUNTS = {
 def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
     """Return the changes of the layout as pairs of path and value.
 
-    Each change has a switch and a value: two elements, of which the name of the value begins with
-    that of the switch.
+    Each change consists of two elements, a switch and a value. The name of the value begins with
+    the name of the switch.
 
     Raises
     ------

@@ -21,8 +21,8 @@ def find_beside(settings: Path, named: str, suffix: str) -> Path:
     Parameters
     ----------
     suffix
-        Required suffix of the name, so that a settings file of unknown origin cannot cause other
-        files to be read.
+        Required suffix of the name, so that a settings file of unknown origin cannot cause files
+        of other kinds to be read.
 
     Raises
     ------

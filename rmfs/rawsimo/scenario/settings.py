@@ -74,7 +74,7 @@ class Settings:
         return _kind(self._elements.get(tag))
 
     def choice(self, tag: str, choices: Mapping[str, _T], default: str) -> _T:
-        """Return the value of the word in an element, which must be among `choices`."""
+        """Return the value in `choices` of the word in an element; other words are errors."""
         word = self.text(tag, default)
         if word not in choices:
             raise self.error(tag, f"must be one of {', '.join(choices)} (given: {word!r:.40})")
@@ -113,7 +113,7 @@ class Settings:
         )
 
     def words(self, tag: str, choices: Mapping[str, str]) -> list[tuple[float, str]]:
-        """Return pairs of a key and the value of its word among `choices`, in order of the keys."""
+        """Return pairs of a key and the value of its word in `choices`, in order of the keys."""
         found = []
         for key, word in self._pairs(tag):
             if word not in choices:

@@ -52,7 +52,7 @@ class OrderList:
     path
         The file.
     skus
-        Its SKUs, with popularities in proportion to the units ordered, or equal without orders.
+        Its SKUs. Their popularities are in proportion to the units ordered; equal without orders.
     notes
         What the reader does not know and has left out.
     """

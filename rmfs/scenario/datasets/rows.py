@@ -98,7 +98,7 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
     Parameters
     ----------
     columns
-        Required columns; `a|b` is a column named a or b, and a row has its field under a.
+        Required columns; `a|b` is a column named a or b, whose fields are named a in every row.
 
     Raises
     ------

@@ -26,7 +26,7 @@ T = TypeVar("T")
 
 
 class Assembly(ABC, Generic[T]):
-    """Creates an intake from a regular process and batches, with down periods.
+    """Creates an intake from regular arrivals and batches, with down periods.
 
     Parameters
     ----------

@@ -59,7 +59,7 @@ class BacklogOrders:
     capacity
         Space units of all pods together.
     openings
-        Periods during which nothing is generated.
+        Tells whether a time is outside the down periods, in which nothing is generated.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class BacklogOrders:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> OrderArrival | None:
-        """Return an order; None if the backlog is full or paused, or stock cannot serve it."""
+        """Return an order; None if the backlog is full or paused, or stock cannot serve one."""
         # called in any case, since it has to observe every change of stock
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
         if not self._rest.ends(now_us) or not wanted:
@@ -102,7 +102,7 @@ class BacklogBundles:
     capacity
         Space units of all pods together.
     openings
-        Periods during which nothing is generated.
+        Tells whether a time is outside the down periods, in which nothing is generated.
     """
 
     def __init__(
@@ -123,7 +123,7 @@ class BacklogBundles:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
-        """Return a bundle; None if the backlog is full or paused, or if the bundle is too large."""
+        """Return a bundle; None if the backlog is full or paused, or the load limit is reached."""
         load = state.load
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)
         if not self._rest.ends(now_us) or not wanted:

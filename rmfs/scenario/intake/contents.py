@@ -49,7 +49,7 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     Raises
     ------
     InputError
-        If an order may need more lines than there are SKUs to order.
+        If an order may need more lines than there are SKUs with a popularity above zero.
     """
     if isinstance(scenario.orders, WordOrders):
         assert isinstance(scenario.skus, LetterSkus)

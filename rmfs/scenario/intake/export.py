@@ -99,7 +99,7 @@ def export_stream(
 def order_stream_of(scenario: Scenario, skus: SkuSet, seed: int) -> OrderStream:
     """Return all orders of a scenario, which must not depend on a run.
 
-    If the rates are per pick station, they are those for one pick station.
+    If order rates are given per pick station, the orders are those for a single pick station.
     """
     recorder = StreamRecorder()
     end_us = first_us(scenario.warmup_s + scenario.duration_s)

@@ -101,9 +101,9 @@ class Intake(Generic[T]):
     record
         Called with each arrival.
     stream
-        The orders or bundles of the file from which they come, if any.
+        The orders or bundles of a file, if arrivals come from one.
     finish
-        Transforms each arrival.
+        Function that transforms each arrival, for example to postpone its due time.
     """
 
     def __init__(

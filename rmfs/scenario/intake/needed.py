@@ -35,7 +35,7 @@ class NeededBundles:
     capacity
         Space units of all pods together.
     openings
-        Periods during which nothing is generated.
+        Tells whether a time is outside the down periods, in which nothing is generated.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class NeededBundles:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
-        """Return a bundle of the SKU with the fewest units left, if this SKU is short.
+        """Return a bundle of the SKU with the fewest units left; None if this SKU is not short.
 
         The result is also None in a down period, during the pause after a bundle that would have
         exceeded the load limit, and while the maximum number of bundles waits.

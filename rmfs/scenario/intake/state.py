@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Site:
-    """Properties of the warehouse that a scenario needs.
+    """Those properties of a warehouse that a scenario needs.
 
     Attributes
     ----------

@@ -50,7 +50,7 @@ class Poisson:
     substreams
         Substream k determines the time between candidates k - 1 and k, and whether k is accepted.
     openings
-        Down periods, in which the rate is zero.
+        Tells whether a time is outside the down periods, in which the rate is zero.
     until_us
         Time after which no arrival is generated.
     """

@@ -19,16 +19,17 @@ T = TypeVar("T")
 
 
 class Timed(Generic[T]):
-    """Generates arrivals at the times of candidates (a process of an intake).
+    """Generates arrivals at given times (a process of an intake).
 
     Parameters
     ----------
     candidates
-        The candidates, in order of time.
+        The possible arrivals, in order of time; see `share` for those that are not accepted.
     make
-        Creates the arrival of a candidate.
+        Creates the arrival for an accepted candidate.
     share
-        Function that returns the share of active stations; None if the rate is not tied to them.
+        Function that returns the share of active stations. A candidate is accepted if this share
+        exceeds its `needed_share`. None: the rate is not tied to stations; all are accepted.
     """
 
     def __init__(

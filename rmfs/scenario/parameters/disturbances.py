@@ -38,7 +38,7 @@ class Closures(_Repeated):
 
 
 class ChargerFailures(_Repeated):
-    """A plug-in place fails for a while; the robot there waits or is called away."""
+    """A charger fails for a while; the robot there waits or is called away."""
 
 
 class LateMotions(Block):
@@ -76,9 +76,7 @@ class Disturbances(Block):
     breakdowns: Breakdowns | None = Field(None, description="robots that stop; default: none")
     slow: SlowRobots | None = Field(None, description="robots that are slow; default: none")
     closures: Closures | None = Field(None, description="closed waypoints; default: none")
-    chargers: ChargerFailures | None = Field(
-        None, description="plug-in places that fail; default: none"
-    )
+    chargers: ChargerFailures | None = Field(None, description="chargers that fail; default: none")
     late_motions: LateMotions | None = Field(
         None, description="motions that begin late; default: none"
     )

@@ -34,14 +34,14 @@ GROUPS = 20
 """Number of groups of orders that are left out in turn (jackknife)."""
 SHARES = (0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9)
 DRAWS = 4
-"""Number of sets of SKUs drawn for each share."""
+"""Number of sets of SKUs drawn for each simulated share of affinity."""
 MOST_ORDERS = 20_000
 TRIES = 16
 """Maximum number of draws of a line to find a SKU that its order does not contain yet."""
 
 
 def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> float:
-    """Return how often pairs of SKUs recur, relative to SKUs that are drawn independently.
+    """Return how often pairs of SKUs recur, relative to lines with independently drawn SKUs.
 
     The result is nan if there are fewer than `LEAST_PAIRS` pairs, or no pair recurs.
 

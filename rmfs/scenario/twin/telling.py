@@ -1,4 +1,4 @@
-"""Output of a twin: the main figures on the terminal, all of them in a file."""
+"""Output of a twin: the main figures on the terminal, all figures in a file."""
 
 from __future__ import annotations
 

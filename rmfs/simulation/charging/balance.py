@@ -62,7 +62,7 @@ def balance(layout: Layout, energy: Energy) -> Balance:
 
 
 def working_w(layout: Layout, energy: Energy) -> float:
-    """Estimate the power in W of a fleet at top speed, half the time with a half-full pod.
+    """Estimate the power in W of a fleet driving at top speed, half the time with a half-full pod.
 
     Starts and turns take more, waiting takes less; at the shipped sites these effects roughly
     cancel. It is an estimate, not a bound.

@@ -1,4 +1,4 @@
-"""The plug-in places of a run, which may fail, and from which robots can be sent away."""
+"""The chargers of a run, which may fail, and from which robots can be sent away."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Chargers:
-    """All plug-in places.
+    """All chargers.
 
     Attributes
     ----------
@@ -35,20 +35,20 @@ class Chargers:
         self.stations = list(self._services)
 
     def unplug(self, decision: Unplug) -> None:
-        """Send a robot away from its plug-in place.
+        """Send a robot away from its charger.
 
         Raises
         ------
         ValueError
-            If it is not at a plug-in place, or is not charging.
+            If the robot is not at a charger, or is not charging.
         """
         service = self._services.get(decision.robot.station)
         if service is None or not service.is_charging:
-            raise ValueError(f"robot {decision.robot.index} stands at no plug-in place")
+            raise ValueError(f"robot {decision.robot.index} is not charging at a charger")
         service.unplug()
 
     def set_working(self, station: int, working: bool) -> None:
-        """Set whether a place works or has failed."""
+        """Set whether a charger works or has failed."""
         plan = self._layout.stations[station]
         assert isinstance(plan.kind, RecoveryKind)
         power_w = plan.kind.head_w if working else 0.0

@@ -1,7 +1,7 @@
 """Prevents stranding: a robot that could not complete another task is sent to charge instead.
 
-Strandings can still occur, for example after a long delay or if a place is out of service. They are
-counted, and the robot is rescued after a given time.
+Strandings can still occur, for example after a long delay or if a charger is out of service. They
+are counted, and the robot is rescued after a given time.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Service at a plug-in place: a robot stays until its battery has reached its target level."""
+"""Service at a charger: a robot stays until its battery has reached its target level."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 
 class ChargeService:
-    """The service of one plug-in place: it determines when the robot there stops charging.
+    """The service of one charger: it determines when the robot there stops charging.
 
     Attributes
     ----------
     power_w
-        Present charging power of the place, in W; 0 while it is out of service.
+        Present charging power, in W; 0 while the charger is out of service.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class ChargeService:
             self._enter()
 
     def set_power(self, power_w: float) -> None:
-        """Change the charging power of the place, in W; the caller updates traffic."""
+        """Change the charging power, in W; the caller updates traffic."""
         self.power_w = power_w
         if self._task is not None:
             self._cancel()

@@ -1,4 +1,4 @@
-"""Reproducible modes: questions are solved at once, and answers are delayed by a computed time."""
+"""Reproducible modes: questions are solved immediately; answers are delayed by a computed time."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ class _Planning(Model):
     """Plans are begun only at multiples of this time, for robots with a pod first, then in the
     order of requests; 0: whenever a robot asks."""
     lazy: bool = False
-    """Whether a robot asks for a plan only when it could depart, and not while it lifts its pod."""
+    """Whether a robot asks for a plan only when it could depart, not while it is lifting a pod."""
 
 
 class InstantPlanning(_Planning):

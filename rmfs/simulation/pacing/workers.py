@@ -149,7 +149,7 @@ class Worker:
 
 
 class Workers:
-    """A pool of workers; a lost one is replaced.
+    """A fixed number of workers; a lost one is replaced.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
         self._plan: tuple[Call, set[int], dict[int, int]] | None = None
 
     def next_event_s(self) -> float:
-        """Return when the next schedule is due; inf without batteries or before an answer."""
+        """Return when the next schedule is due; inf without batteries or while one is computed."""
         if self.view.batteries is None or self.in_flight:
             return inf
         return max(self._asked_s, 0.0) + self.parameters.period_s

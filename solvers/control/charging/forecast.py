@@ -26,9 +26,9 @@ class Forecast:
     """Counts the robots in use for work, and forecasts the number needed from recent counts.
 
     Robots at rest, charging, or queuing behind another waiting robot at a pick or replenishment
-    station are not counted. Some stations with work have no robot at their head. Therefore the
-    count is multiplied by the number of stations with work, and divided by the number of those that
-    have a robot there.
+    station are not counted. Some stations with work have no robot at the head of their queue.
+    Therefore the count is multiplied by the number of stations with work, and divided by the number
+    of those that have a robot at the head of their queue.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Forecast:
             self._seen.popleft()
 
     def cases(self) -> NDArray[np.int64]:
-        """Return the number of robots needed in each case, all equally likely, shape (Q,)."""
+        """Return the number of robots needed in each of Q equally likely cases, shape (Q,)."""
         robots = len(self._view.robots)
         busy = sum(seen.busy for seen in self._seen)
         stations = sum(seen.stations for seen in self._seen)

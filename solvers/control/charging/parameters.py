@@ -22,23 +22,24 @@ class ScheduleParameters(LevelParameters):
     period_s: Positive = 60.0
     """Seconds between schedules."""
     slot_share: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.1
-    """Length of a slot: share of a battery that the most powerful place charges in this time."""
+    """Length of a time slot, given as the share of a battery that the most powerful charging place
+    charges in it."""
     slots: Count = 10
-    """Number of slots to plan ahead."""
+    """Number of time slots to plan ahead."""
     longest: Count = 7
-    """Maximum length of a stay in slots."""
+    """Maximum length of a stay at a charging place, in time slots."""
     worth: NotNegative = 1.15
     """Value of energy: the robot time that it is worth, as a multiple of the time in which the most
-    powerful place supplies it."""
+    powerful charging place supplies it."""
     idle: Share = 0.6
     """Cost of time away from work of a robot that is not needed, as a share of the cost of time for
     which a robot is missing."""
     curve: Share = 0.2
-    """Curvature of the value of energy, which is 1 + `curve` times the average in an empty battery,
-    and 1 - `curve` times the average in a full one."""
+    """Curvature of the value of energy: it is (1 + `curve`) times its average in an empty battery,
+    and (1 - `curve`) times its average in a full one."""
     margin_share: Share = 0.0
     """Safety margin, as a share of the capacity, above the level that is enough for any task. The
-    model penalises levels below the sum."""
+    model penalises levels below the sum of the two."""
     window_s: Positive = 1200.0
     """Length in seconds of the past period from which the number of needed robots is forecast."""
     cases: Count = 4

@@ -29,7 +29,7 @@ class Group:
     Attributes
     ----------
     stations
-        The stations.
+        The chargers or swap stations of the group.
     power_w
         Charging power of a place; 0 for swap.
     swapped_share

@@ -40,8 +40,8 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     that have become invalid are dropped.
 
     A robot due to bring a pod to a station fetches the nearest of the pods called for it. If the
-    optimiser fails, pod match decides. For replenishment, and for open requests that no pod called
-    or under way can serve, PPS lexicographic with its defaults decides.
+    optimiser fails, its method `greedy` decides. For replenishment, and for open requests that no
+    pod called or under way can serve, PPS lexicographic with its defaults decides.
     """
 
     parameters_model = PileOnParameters

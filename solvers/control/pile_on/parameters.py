@@ -19,8 +19,9 @@ class JointParameters(SearchParameters):
     """Parameters shared by both controllers with the joint model."""
 
     method: Method = "joint"
-    """Solution method: `joint` (pod match, improved by CP-SAT); `greedy`, pod match alone;
-    `cp_sat`, proven optimality over all pairs, for small sites; `hadgs` (Jiao et al.)."""
+    """Solution method: `greedy` (repeatedly calls the pod with the greatest gain); `joint` (the
+    solution of `greedy`, improved by CP-SAT); `cp_sat` (proven optimality, for small sites);
+    `hadgs` (the heuristic HADGS of Jiao et al. 2025)."""
     split: bool = False
     """Whether the lines of an order may go to different stations at different times."""
     split_orders: Annotated[int, pydantic.Field(ge=0)] | None = None
@@ -28,14 +29,14 @@ class JointParameters(SearchParameters):
     wall; default: as many as the wall holds, or any number without a wall."""
     part_s: NotNegative = 0.0
     """With `split`, cost of an additional tote of an order, in seconds of a robot: an order is
-    split only if the pods that could serve it whole now cost more."""
+    split only if it would cost more to call pods that can serve it whole now."""
     later: bool = False
     """Whether a whole order may take a slot while pods for some of its lines are still to come."""
     open_line_s: NotNegative = 100.0
     """With `later`, cost of each line whose pod is still to come, in seconds of a robot."""
     when_needed: bool = True
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
-    whenever a slot can be filled, as in M1G and HADGS."""
+    whenever a slot can be filled, as in the model M1G and the heuristic HADGS of Jiao et al."""
     horizon_s: NotNegative = 90.0
     """Seconds of work below which a station needs another pod."""
     by_work: bool = False
@@ -63,8 +64,8 @@ class JointParameters(SearchParameters):
     """Number of slots per station that are reserved for orders that the pod at the head of the
     station's queue can serve."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 20
-    """Steps of the search for a bound on the value of each decision. The bound is only recorded.
-    More steps improve it; they do not count as work."""
+    """Steps of the search for a bound on the value of each decision; more steps improve it. The
+    bound is only recorded. If the run is paced by work, these steps take no simulated time."""
     pods_per_sku: Count = 4
     """Number of candidate pods per needed SKU and station passed to CP-SAT."""
     orders_per_slot: Count = 64

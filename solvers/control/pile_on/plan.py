@@ -102,7 +102,8 @@ class Plan:
         items
             Items behind the indices of the solution.
         call
-            The question that the solution answers; None: it is that of pod match.
+            The question that the solution answers; None if the optimiser failed and the method
+            `greedy` decided.
         """
         pod_station, pod_robot = (np.asarray(solution[k]) for k in ("pod_station", "pod_robot"))
         for pod in np.flatnonzero(pod_station >= 0).tolist():

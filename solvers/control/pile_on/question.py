@@ -81,7 +81,7 @@ def solve(question: Question) -> Answer:
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:
-    """Decide by pod match alone, after a failure; return values as in `Answer.solution`."""
+    """Decide by the method `greedy`, after a failure; return values as in `Answer.solution`."""
     found = solve(replace(question, method="greedy", bound_steps=0)).solution
     assert found is not None
     return found

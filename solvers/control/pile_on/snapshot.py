@@ -68,9 +68,9 @@ def take(
     """Collect what is to be decided now; None if there is nothing.
 
     Orders that stock cannot serve are omitted, and so are planned ones: their units count as demand
-    of their station, and called pods count as under way. A station gets a slot for each item that
-    pods under way cover completely, and one more if it needs a pod; with `when_needed = false` it
-    gets all its free slots.
+    of their station, and called pods count as under way. At each station, the model may fill one
+    slot for each item that pods under way cover completely, and one more if the station needs a
+    pod; with `when_needed = false`, it may fill all free slots.
 
     Parameters
     ----------

@@ -61,12 +61,12 @@ class PileOnTasksParameters(JointParameters):
     """Additional value of assigning an order, in seconds of a robot, per second that the order has
     waited, times the weight of its class."""
     replenishment_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.33
-    """Maximum share of the robots working for replenishment stations at a time; at least one
-    robot."""
+    """Maximum share of all robots that may work for replenishment stations at a time; at least one
+    robot may."""
     other_stations: bool = False
     """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 8.0
-    """Maximum distance of `other_stations` in m (Euclidean)."""
+    """With `other_stations`, maximum Euclidean distance from a robot to the other station, in m."""
     rest: RestRule = "nearest"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
@@ -85,13 +85,13 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     The model is asked, at most once per `buffer_s`, after the events in `triggers`, as long as a
     slot is free for which nothing is planned. It may use the robots without a task. Its answer is
     stored as a plan and carried out as in POA pile-on; a called pod whose robot has got another
-    task meanwhile goes to the next free robot.
+    task meanwhile is fetched by the next free robot.
 
     Decisions outside M1G are made by rules. A robot with a pod continues while the pod can serve
     its station (or, optionally, another pick station nearby), and then parks it where PSA says. Up
     to `replenishment_share` of the robots bring pods to replenishment stations: each goes to the
-    nearest one with work, with a pod chosen by PPS lexicographic. The others rest. If the optimiser
-    fails, pod match decides.
+    nearest one with work, with a pod chosen by PPS lexicographic. All other robots rest. If the
+    optimiser fails, its method `greedy` decides.
     """
 
     parameters_model = PileOnTasksParameters

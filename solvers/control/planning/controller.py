@@ -37,25 +37,25 @@ if TYPE_CHECKING:
     Decision = Ask[Question] | TaskDecision | By[Any]
 
 _WORTH_A_PLAN = 2
-"""Number of free slots of a station from which a new order alone justifies a new plan."""
+"""Number of free slots of a station above which a new order alone justifies a new plan."""
 
 
 class PlanningControl(JointAllocation[PlanningParameters]):
     """Plans the next visits of every pick station, but commits only to the first steps.
 
     The model is asked, at most once per `buffer_s`, when a pod has reached a pick station, a robot
-    without a pod is free, or an order has arrived for which there are slots or idle robots. It
-    plans several visits per station, with the orders that each serves: whole orders, which keep
-    their slot until their last pod has come, or separate lines (`split`). Each plan starts from the
-    previous one. Only two kinds of steps are carried out: orders whose first pod is under way get
-    slots, and when a station has less than `horizon_s` of work on pods under way, the nearest
-    free robot brings it its next pod.
+    without a pod is free, or an order has arrived while robots rest or a station has more than two
+    free slots. It plans several visits per station, with the orders that each serves: whole orders,
+    which keep their slot until their last pod has come, or separate lines (`split`). Each plan
+    starts from the previous one. Only two kinds of steps are carried out: orders whose first pod is
+    under way get slots, and when a station has less than `horizon_s` of work on pods under way, the
+    nearest free robot brings it its next pod.
 
-    All other decisions are made by rules. A robot with a pod continues while there is work for it
-    at its station, takes it to a replenishment station where bundles for this pod wait, or parks it
-    where PSA says. While the stock is below `stock_floor`, some robots (`bundle_share`) bring pods
-    for bundles; while it is below `stock_ceiling`, so do robots that no pick station needs. If the
-    optimiser fails, its start rule makes the plan.
+    All other decisions are made by rules. A robot with a pod keeps it at its station while there is
+    work for the pod, takes the pod to a replenishment station where bundles for it wait, or parks
+    it where PSA says. While the stock is below `stock_floor`, some robots (`bundle_share`) bring
+    pods to replenishment stations; while it is below `stock_ceiling`, so do robots that no pick
+    station needs. If the optimiser fails, its start rule makes the plan.
     """
 
     parameters_model = PlanningParameters

@@ -41,7 +41,8 @@ class ExpectedOrders:
     """Draws orders that may arrive soon: past orders, at the rate at which orders arrived.
 
     A controller knows neither the arrival process nor the orders it will generate. It knows the
-    past orders of the scenario, the initial backlog, and the orders that have arrived since.
+    orders from before the run (`View.past_orders`), the initial backlog, and the orders that have
+    arrived since.
 
     Parameters
     ----------
@@ -68,17 +69,20 @@ class ExpectedOrders:
         self._come += 1
 
     def draw(self, horizon_s: float, scenarios: int) -> list[list[ExpectedOrder]]:
-        """Return the future orders of each scenario; there are none before the first arrival.
+        """Draw future orders one or more times; there are none before the first arrival.
 
         Orders with a line that no single pod can serve are left out.
 
         Parameters
         ----------
         horizon_s
-            Horizon in s; in each scenario, a Poisson-distributed number of orders arrives within
-            it.
+            Horizon in s; in each draw, a Poisson-distributed number of orders arrives within it.
         scenarios
-            Number of scenarios to draw.
+            Number of draws.
+
+        Returns
+        -------
+        The future orders of each draw.
         """
         elapsed_s = self._view.now_s - self._begin_s
         if not self._come or elapsed_s <= 0:

@@ -88,7 +88,7 @@ class PlanningParameters(SearchParameters):
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Steps of the search for a bound on the value of each plan. The bound is only recorded, and
-    these steps do not count as work."""
+    """Steps of the search for a bound on the value of each plan. The bound is only recorded. If the
+    run is paced by work, these steps take no simulated time."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 1.0
     """Limit of `cp_sat` in deterministic seconds of CP-SAT."""

@@ -27,7 +27,7 @@ class Question:
     data
         The snapshot.
     start
-        New visits per station from the last plan that are still possible.
+        For each station, the pods of those new visits of the last plan that are still possible.
     method, limits, seed
         Method of the search, its limits and its seed.
     bound_steps

@@ -46,7 +46,9 @@ def solve(question: Question) -> Answer:
 
 
 def worth_looking_at(cost_s: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return indices of places that an optimal placement can use: the P cheapest of each pod.
+    """Return indices of the places that an optimal placement of P pods can use.
+
+    These are, for each pod, the P places with the least cost.
 
     Parameters
     ----------

@@ -59,8 +59,8 @@ class StaysParameters(StorageParameters, SearchParameters):
     """Parameters of PSA stays."""
 
     method: Literal["cp_sat", "highs", "greedy"] = "cp_sat"
-    """Solution method: `greedy` is a rule in which the stays whose cost depends most on the zone
-    choose first. CP-SAT, and HiGHS (to optimality), start from its solution."""
+    """Solution method: `greedy` assigns zones to one stay after another, beginning with those whose
+    cost depends most on the zone; `cp_sat` and `highs` (to optimality) start from its solution."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
     """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     gap: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.001

@@ -1,4 +1,4 @@
-"""Base of TA controllers with models: times of questions, and the rule that replaces an answer."""
+"""Base of TA controllers with models: when they ask, and the rule used without an answer."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class TaskParameters(BufferParameters):
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
     """Maximum number of robots at, or on their way to, one station."""
     rule_meanwhile: bool = True
-    """Whether the rule decides for robots with a pod while an answer is pending, since they may
-    block others. Robots without a pod wait for the answer."""
+    """Whether a rule decides for robots with a pod while an answer is pending, since these robots
+    may block others. Robots without a pod wait for the answer."""
     rest: RestRule = "nearest"
     """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
     `random`."""
@@ -51,9 +51,10 @@ class Asking(TaskAllocation[P]):
     """Asks the optimiser what the robots that need a task, and those at rest, should do.
 
     The optimiser is asked as soon as a robot needs a task, and for robots at rest when there is new
-    work, at most once per `buffer_s`. If the optimiser has failed or has not answered yet, a rule
-    decides: a pod continues at a station that it can serve, or is parked; an empty robot works for
-    the station with work that has the fewest pods under way; ties are broken by travel time.
+    work, at most once per `buffer_s`. If the optimiser fails, and for robots with a pod also while
+    an answer is pending (`rule_meanwhile`), a rule decides: a pod continues at a station that it
+    can serve, or is parked; an empty robot works for the station with work that has the fewest pods
+    under way; ties are broken by travel time.
     """
 
     goes_on = True
@@ -70,7 +71,7 @@ class Asking(TaskAllocation[P]):
 
     @abstractmethod
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the valid decisions of a solution; iterate over its parts by `call.left`."""
+        """Yield the valid decisions of a solution; must iterate over its parts by `call.left`."""
 
     def next_event_s(self) -> float:
         """Return when a question may next be asked, in s; inf if an event has to occur first."""

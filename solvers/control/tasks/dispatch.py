@@ -56,7 +56,7 @@ class Memo:
     station
         Station of each task.
     own
-        Whether a task continues with the pod already carried.
+        Whether each task is for a pod that a robot already carries.
     """
 
     robots: list[Robot]

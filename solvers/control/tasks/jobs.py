@@ -42,13 +42,14 @@ class Job:
     Attributes
     ----------
     pod, station
-        The pod and the station.
+        Index of the pod, and of the station that could use it.
     bring_s
         Time of the loaded trip to the station, in s.
     service_s
         Service time at the station, in s.
     due_s
-        Time from now until the station has done the work of its pods and earlier jobs, in s.
+        Time from now until the station has finished the pods under way to it and the jobs chosen
+        before this one, in s.
     worth_s
         Value of the pod's work, in s of robot time.
     """

@@ -14,7 +14,7 @@ NONE = -1
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Simulate robots slot by slot; return the cost of energy, drives and missing robots."""
+    """Simulate robots by time slots; return the cost of energy, drives and missing robots."""
     group, begin, length = (values[name].tolist() for name in ("group", "begin", "length"))
     cases, slots = data["wanted"].shape
     within("group", group, NONE, len(data["gain"]))

@@ -1,4 +1,4 @@
-"""Check of the run bound: the inequalities of the linear program."""
+"""Check of the run bound, an upper bound on units per hour found by a linear program."""
 
 from __future__ import annotations
 

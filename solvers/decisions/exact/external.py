@@ -40,7 +40,8 @@ COMMANDS = {
 """Command of each known solver, according to its manual."""
 
 _GRACE_S = 30.0
-"""Seconds after its time limit at which a command is stopped, as solvers may not count reading."""
+"""Seconds after its time limit at which a command is stopped: some solvers do not count the time in
+which they read the program."""
 
 
 def available() -> tuple[str, ...]:
@@ -61,7 +62,7 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
     seconds
         Time limit, in s of wall time.
     where
-        Name of the question in errors. Default: its name.
+        What error messages call the question, such as the path of its file. Default: its name.
 
     Returns
     -------

@@ -56,7 +56,7 @@ def exact(decision: Decision, where: str = "") -> Exact:
     decision
         The question.
     where
-        Name of the question in errors. Default: its name.
+        What error messages call the question, such as the path of its file. Default: its name.
 
     Raises
     ------

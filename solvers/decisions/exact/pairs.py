@@ -46,7 +46,7 @@ def matching(data: Matching) -> Stated:
 
 
 def balance(data: Balance) -> Stated:
-    """Matching with stations: the k-th robot at a station takes its k-th seat, at rising cost."""
+    """Matching with costs of waiting: the k-th robot sent to a station waits for k - 1 others."""
     builder = ProgramBuilder()
     x, left = _robots(builder, data.pairs)
     stations = len(data.room)

@@ -17,7 +17,7 @@ ORDERS = {"small": 8, "medium": 16, "real": 32, "double": 64}
 """Number of orders of a sequencing question: the first in the backlog that can be served."""
 
 SLOTS = {"small": 3, "medium": 6, "real": 6, "double": 6}
-"""Maximum number of open orders in a sequencing question."""
+"""Maximum number of orders open at the same time in a sequencing question."""
 
 ROBOTS = {
     "small": (2, 3, 4, 5, 6, 7, 8, 9, 10, 12),
@@ -25,15 +25,15 @@ ROBOTS = {
     "real": (15, 20, 24, 26, 30, 35, 45, 60),
     "double": (40, 60, 90, 120),
 }
-"""Numbers of robots in the questions for the run bound, of one hour each."""
+"""Numbers of robots in the questions of the family `run_bound`, each for a run of one hour."""
 
 
 def derived(family: str, size: str, asked: Iterable[Decision]) -> Iterator[Decision]:
     """Derive questions of a family.
 
     `rack_allocation`: orders, free slots and pods of a pile-on question; a station without a free
-    slot takes one order. `sequencing`: one station and the first orders of its backlog, with the
-    pods at hand that hold any of their SKUs. `run_bound`: the site with other numbers of robots.
+    slot takes one order. `sequencing`: one station and the first orders of the backlog, with the
+    available pods that hold any of their SKUs. `run_bound`: the site with other numbers of robots.
 
     Parameters
     ----------

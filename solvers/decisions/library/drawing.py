@@ -59,7 +59,7 @@ _PARAMETERS: Mapping[str, Mapping[str, Any]] = {
         "scenario.energy.battery.initial_most_share": 0.8,
     },
 }
-"""Parameters changed so that a set asks often enough during the run."""
+"""Parameters changed so that a set of controllers asks often enough during the run."""
 
 _AS_NEEDED = frozenset({"poisson"})
 """Scenarios that order bundles when SKUs run low, so that no stock levels need to be set."""

@@ -80,14 +80,14 @@ def improve(
     sizes: Collection[str] = (),
     tell: Callable[[str], None] = print,
 ) -> int:
-    """Search for better values and bounds of open questions.
+    """Search for better values and bounds of questions without a proven optimum.
 
     Parameters
     ----------
     library
-        The library.
+        The library, in which improvements are entered.
     effort
-        The effort.
+        Limits of the search.
     families, sizes
         Families and sizes of the questions. Default: all.
     tell

@@ -45,7 +45,8 @@ class Row:
     question
         Name of the question.
     family, size, load, moment
-        Family, size, kind of demand and time at which it was drawn.
+        Its family, and the size of site, kind of demand and part of the run (such as `early`) from
+        which it was drawn.
     value, bound
         Best known value and bound; nan if there is none.
     value_by, bound_by

@@ -58,7 +58,7 @@ def assign(cost: NDArray[np.float64], solver: Solver = "scipy") -> Assigned | No
     cost
         Shape (M, N); +inf forbids a pair.
     solver
-        The solver. Default: SciPy.
+        Algorithm to use. Default: SciPy.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def solve_by_assignment(
     objective
         Objective function of the model.
     solver
-        The solver.
+        Algorithm to use.
 
     Returns
     -------

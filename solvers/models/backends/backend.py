@@ -138,7 +138,7 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) 
 
 
 def with_relaxed_bound(backend: Backend) -> Backend:
-    """Wrap a back end so that a search ended by a limit also reports the relaxation's bound.
+    """Wrap a back end: if a limit ends the search, the relaxation's bound is computed as well.
 
     The better one of the two bounds is reported.
 

@@ -28,7 +28,7 @@ from rmfs.solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardErr
 
 NAME = "cp_sat"
 RESOLUTION = 1024
-"""Number of steps per unit into which costs are rounded."""
+"""Costs are rounded down to multiples of 1 / `RESOLUTION`."""
 
 _FAR = 2**62
 

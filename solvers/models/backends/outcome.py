@@ -116,7 +116,7 @@ class Relaxation:
 
 
 def trivial(program: LinearProgram, backend: str) -> Outcome | None:
-    """Solve a program without columns here, because solvers treat such a program differently.
+    """Solve a program without columns here, as each solver treats such programs in its own way.
 
     Parameters
     ----------

@@ -28,10 +28,10 @@ class Columns:
     robot, group, begin, length
         The stays, sorted by robot, shape (N,); the first row of each robot means "no stay".
     cost_s
-        Cost of each stay without missed work, shape (N,).
+        Cost of each stay, excluding the cost of missing robots, shape (N,).
     away, used
-        Whether the robot of each stay is away from work in each slot, and whether it occupies a
-        place, shape (N, T).
+        Whether the robot of each stay is away from work in each time slot, and whether it occupies
+        a place, shape (N, T).
     first
         First row of each robot, followed by N, shape (R + 1,).
     """

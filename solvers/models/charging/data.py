@@ -1,7 +1,8 @@
 r"""The problem: robots with batteries, places that charge or swap them, and demand for robots.
 
-Time is divided into T slots. Each robot makes at most one stay at a place, given by the group g of
-the place, the first slot b and the number n of slots. During its stay the robot is away from work.
+Time is divided into T time slots. Each robot makes at most one stay at a place, given by the group
+g of the place, the first time slot b and the number n of time slots. During its stay the robot is
+away from work.
 
 .. math::
 
@@ -10,14 +11,14 @@ the place, the first slot b and the number n of slots. During its stay the robot
     + (1 - idle) \frac{slot}{Q} \sum_{q,t} \bigl(wanted_{qt} - (R - away_t)\bigr)^+
 
 :math:`end_r` and :math:`low_r` are the final and the lowest level of robot r, :math:`way_{rg}` is
-its drive back from a place of group g, :math:`slots_r` is its number of slots away from work,
-:math:`away_t` is the number of robots away in slot t, and R is the number of robots. The other
+its drive back from a place of group g, :math:`slots_r` is its number of time slots away from work,
+:math:`away_t` is the number of robots away in time slot t, and R is the number of robots. The other
 symbols are fields of `Charging`.
 
 Missing robot time is weighed against energy: :math:`lost(l) = worth\,(1 - l - \kappa (l - l^2))` is
 the robot time needed to fill a battery whose final level is l; :math:`\kappa` makes energy worth
 more in an empty battery than in a full one. Batteries fill with constant power up to a bend, and
-from there on with power that falls linearly to 0; a swap takes one slot. A group consists of
+from there on with power that falls linearly to 0; a swap takes one time slot. A group consists of
 identical places. The demand for robots is given as Q equally likely cases.
 """
 
@@ -47,35 +48,35 @@ class Charging:
     level
         Current level of each battery, as a share of its capacity, shape (R,).
     drain
-        Consumption of each robot per slot of work, as a share of the capacity, shape (R,).
+        Consumption of each robot per time slot of work, as a share of the capacity, shape (R,).
     ready
-        First slot in which each robot may leave its work, shape (R,).
+        First time slot in which each robot may leave its work, shape (R,).
     waits
         Whether a robot is already on its way to a place, shape (R,): it is away from work until its
         stay is over, and its battery does not drain.
     here
         Group of the place where a robot is being charged, or `AWAY`, shape (R,). Its stay begins in
-        slot 0; if it has no stay, it leaves now.
+        time slot 0; if it has no stay, it leaves now.
     way_s
         Time from each robot to a place of each group, shape (R, G), in s; +inf where it may not go.
         A stay begins with this drive, unless the robot is already there. The cost of a stay also
         includes the drive back, which takes the same time.
     places
-        Number of robots that each group can hold in each slot, shape (G, T).
+        Number of robots that each group can hold in each time slot, shape (G, T).
     gain
-        Share of a battery's capacity that each group charges per slot at constant power, shape
+        Share of a battery's capacity that each group charges per time slot at constant power, shape
         (G,).
     swapped
-        Battery level after a swap at each group, shape (G,); a swap takes one slot. 0: the group
-        charges instead.
+        Battery level after a swap at each group, shape (G,); a swap takes one time slot. 0: the
+        group charges instead.
     wanted
-        Number of robots needed for work in each of Q cases, shape (Q, T).
+        Number of robots needed for work in each of Q cases and in each time slot, shape (Q, T).
     slot_s
-        Length of a slot, positive, in s.
+        Length of a time slot, positive, in s.
     worth_s
-        Worth of a full battery at the end of the last slot, in s of robot time.
+        Worth of a full battery at the end of the last time slot, in s of robot time.
     longest
-        Maximum number of slots of a stay. Default 8.
+        Maximum number of time slots of a stay. Default 8.
     taper_from
         Level above which charging slows down; 1: never. Default 0.8.
     full
@@ -169,7 +170,7 @@ class Charging:
 
     @property
     def slots(self) -> int:
-        """Number of slots T."""
+        """Number of time slots T."""
         return int(self.wanted.shape[1])
 
     def charged(self, level: Floats, gain: Floats, slots: Floats) -> Floats:
@@ -178,8 +179,8 @@ class Charging:
         Parameters
         ----------
         level, gain, slots
-            Levels before, share of the capacity charged per slot at constant power, and number of
-            slots; arrays that broadcast.
+            Levels before, share of the capacity charged per time slot at constant power, and number
+            of time slots; arrays that broadcast.
         """
         bend = self.taper_from
         steady = level + gain * slots
@@ -200,7 +201,7 @@ class Charging:
         return lost
 
     def missing_s(self, away: Integers) -> Floats:
-        """Return the additional cost of missing robots in each slot, shape (T,), in s.
+        """Return the additional cost of missing robots in each time slot, shape (T,), in s.
 
         This is the mean over the cases of the number of missing robots, times `missed_s`. The cost
         of all time away from work (`idle`) is not included.
@@ -208,7 +209,7 @@ class Charging:
         Parameters
         ----------
         away
-            Number of robots away from work in each slot, shape (T,).
+            Number of robots away from work in each time slot, shape (T,).
         """
         missed = np.maximum(self.wanted - (self.robots - away), 0).mean(axis=0)
         time_s: Floats = self.missed_s * missed
@@ -216,7 +217,10 @@ class Charging:
 
     @property
     def missed_s(self) -> float:
-        """Additional cost of a slot away from work in which the robot is needed, in s."""
+        """Additional cost, in s, if a robot is away from work in a time slot in which it is needed.
+
+        The cost of all time away from work (`idle`) is not included.
+        """
         return self.slot_s * (1 - self.idle)
 
 
@@ -229,7 +233,7 @@ class ChargePlan:
     group
         Group of each robot's stay, or `AWAY`, shape (R,).
     begin, length
-        First slot and number of slots of the stay, shape (R,); 0 for robots without a stay.
+        First time slot and number of time slots of the stay, shape (R,); 0 for robots without one.
     """
 
     group: Integers
@@ -238,7 +242,7 @@ class ChargePlan:
 
 
 def costs_s(data: Charging, robot: Integers, plan: ChargePlan) -> Floats:
-    """Return the costs of stays without missed work, shape (N,), in s.
+    """Return the costs of stays, excluding the cost of missing robots, shape (N,), in s.
 
     Parameters
     ----------
@@ -272,7 +276,7 @@ def costs_s(data: Charging, robot: Integers, plan: ChargePlan) -> Floats:
 
 
 def away(data: Charging, robot: Integers, plan: ChargePlan) -> NDArray[np.bool_]:
-    """Return for each stay and slot whether the robot is away from work, shape (N, T).
+    """Return for each stay and time slot whether the robot is away from work, shape (N, T).
 
     Parameters
     ----------
@@ -287,7 +291,7 @@ def away(data: Charging, robot: Integers, plan: ChargePlan) -> NDArray[np.bool_]
 
 
 def during(first: Integers, end: Integers, slots: int) -> NDArray[np.bool_]:
-    """Return for each interval [first, end) whether it contains each slot, shape (N, T)."""
+    """Return for each interval [first, end) whether it contains each time slot, shape (N, T)."""
     slot = np.arange(slots)
     within: NDArray[np.bool_] = (slot >= first[:, np.newaxis]) & (slot < end[:, np.newaxis])
     return within

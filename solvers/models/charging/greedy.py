@@ -1,12 +1,12 @@
 r"""Robots choose stays in turn, lowest battery first, until none would change its choice.
 
 The bound puts a price :math:`\lambda_t` on absence. Let :math:`m_t(a)` be the cost of missing
-robots in slot t if a robots are away; then
+robots in time slot t if a robots are away; then
 
 .. math:: m_t(away_t) \ge \lambda_t\, away_t + \min_a \bigl(m_t(a) - \lambda_t a\bigr)
 
 for any price. This separates the robots if the limits of places are ignored: each can choose its
-stay independently. The price of a slot is the marginal cost of absence in the plan found.
+stay independently. The price of a time slot is the marginal cost of absence in the plan found.
 """
 
 from __future__ import annotations

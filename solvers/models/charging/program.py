@@ -8,7 +8,7 @@ r"""The integer program, with a binary column for every possible stay of a robot
     \sum_{c \text{ at } g \text{ in } t} x_c \le places_{gt}
 
 where :math:`C_r` are the stays of robot r, "no stay" included, and :math:`m_{qt}` is the number of
-robots missing in slot t of case q. The other symbols are those of `data`.
+robots missing in time slot t of case q. The other symbols are those of `data`.
 """
 
 from __future__ import annotations

@@ -67,7 +67,7 @@ class Candidates:
 
 @dataclass(frozen=True)
 class Pruning:
-    """How many candidates of each kind to keep; more of them lose less, but take longer.
+    """How many candidates of each kind to keep: more allow better solutions, but take more time.
 
     Parameters
     ----------

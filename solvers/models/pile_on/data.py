@@ -36,8 +36,8 @@ class PileOn:
     slots
         Free order slots per station, shape (S,).
     line_order, line_sku, line_units
-        The lines of the open orders, sorted by order, then SKU, shape (L,). Orders are numbered
-        0..O-1, and each has at least one line.
+        The lines of the orders to be assigned, sorted by order, then SKU, shape (L,). Orders are
+        numbered 0..O-1, and each has at least one line.
     stock
         Units per pod and SKU that no order has reserved yet, shape (P, K). Only SKUs with demand
         need a column.

@@ -5,7 +5,7 @@ order) with the greatest gain over all stations is called, and its station is fi
 repeated. *Prospects* are orders that get no slot but could be filled from the pods that come. When
 the slots are full, pods whose prospects are worth more than their call costs are called in the same
 way. Gains only decrease as orders and pods go to other stations, so a station is scored again only
-when it is at the top of the queue (lazy evaluation). Deterministic: ties go to the lower station
+when it heads the list sorted by gain (lazy evaluation). Deterministic: ties go to the lower station
 and pod.
 """
 

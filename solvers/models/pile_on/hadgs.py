@@ -11,8 +11,8 @@ the best set is improved by `SEARCHES` local searches, each of which exchanges o
 the paper's l1 = 10 and l2 = 3. Our choices where the paper leaves details open: stations are
 processed in ascending order of the travel of their inbound pods; orders with the greatest `worth`
 come first, then those with the fewest units. The paper does not consider shortages of orders
-already placed, and has no weights `unit` and `visit`; here each unit of shortage that a pod eases
-lowers K by `open_unit`, and both weights are counted.
+already placed, and has no weights `unit` and `visit`; here K contains these two weights, and each
+unit of shortage that a pod eases lowers K by `open_unit`.
 """
 
 from __future__ import annotations

@@ -43,8 +43,8 @@ def solve(
     -------
     A feasible decision, never worse than pod match or the start, with a bound of the full input.
     Its work is measured in deterministic seconds of CP-SAT; only the last step can exceed the
-    limit. The effort that grows with the input, including that of pod match and the bound, is
-    counted in `built`.
+    limit. The effort of building the programs, and that of pod match, are counted in `built`; the
+    steps for the bound are not counted.
     """
     began = time.perf_counter()
     rule = greedy.solve(data, seed=seed)

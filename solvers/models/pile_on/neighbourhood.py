@@ -1,9 +1,9 @@
 """Large inputs: re-optimises a few stations at a time exactly, with all others fixed.
 
-Starting from a decision, pairs of stations that are close to each other are taken in rounds; each
-pair is solved with CP-SAT over its own orders, the waiting orders, and the pods and robots that the
-other stations do not use. The result is never worse than the start, and the limit applies to the
-total deterministic work.
+The search starts from a decision and re-optimises, in rounds, pairs of stations that are close to
+each other. CP-SAT decides on each pair, with its own orders, the waiting orders, and the pods and
+robots that no other station uses. The result is never worse than the start, and the limit applies
+to the total deterministic work.
 """
 
 from __future__ import annotations
@@ -114,7 +114,7 @@ def station_groups(data: PileOn) -> list[Integers]:
 
     Returns
     -------
-    The pairs, ordered so that every station occurs once before any occurs a second time.
+    The pairs, ordered so that the first half of them (rounded up) contains every station.
     """
     stations = np.flatnonzero((data.slots > 0) | (data.shortage > 0).any(axis=1))
     if stations.size <= WIDTH:

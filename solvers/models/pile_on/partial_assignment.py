@@ -104,7 +104,10 @@ class PartialAssignment:
         return (self.order_station < 0) & (self.prospect < 0)
 
     def coverable(self, station: int) -> Flags:
-        """Whether an order is open and the stock at a station covers it in full, shape (O,)."""
+        """Whether what is left in a station's pods covers each order in full, shape (O,).
+
+        False for orders that have a slot, are prospects, or may not go to the station.
+        """
         left = self.stock_left[station, self.data.line_sku]
         self.scored += self.data.orders
         covered = every(left >= self.data.line_units, self.data)
@@ -167,10 +170,10 @@ class PartialAssignment:
         return cost
 
     def completions(self, pods: Integers, station: int) -> tuple[Floats, Floats]:
-        """Number and units of open orders that each pod would complete, two arrays of shape (N,).
+        """Number and units of orders that each pod would complete, two arrays of shape (N,).
 
-        Each order is tested on its own against the pod's units and the stock left at the station;
-        several orders may thus count on the same units.
+        Each order that is not yet placed is tested on its own against the pod's units and what is
+        left in the station's pods; several orders may thus count on the same units.
         """
         offers, need = self._offers, self._needs(station)
         lacking = need > 0
@@ -226,8 +229,8 @@ class PartialAssignment:
         """The best pod whose prospects at a station are worth more than its call costs.
 
         As constraint (5) of `program` demands, the pod must serve an order with a slot there. This
-        is either an order already placed or one of the pod's prospects. The latter gets the slot of
-        a placed order, chosen so that no other called pod is left without an order.
+        is either an order already placed or one of the pod's prospects. In the second case, a
+        placed order that no other called pod depends on gives its slot to the prospect.
         """
         pods = self.free_pods(station)
         if self._spare_order(station) < 0:

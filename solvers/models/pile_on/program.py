@@ -64,7 +64,7 @@ def formulate(
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used.
     strengthen
-        Whether to add constraint (8). Default: yes.
+        Whether to add constraint (8) of this module, which tightens the relaxation. Default: yes.
     """
     builder = ProgramBuilder()
     columns = add_columns(builder, data, candidates)
@@ -115,7 +115,7 @@ def solve_program(
         The pairs of pod and station, order and station, and robot and pod that may be used; None:
         all. With a proper subset there is no bound (-inf).
     strengthen
-        Whether to add constraint (8).
+        Whether to add constraint (8) of this module, which tightens the relaxation.
 
     Returns
     -------

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from rmfs.solvers.models.planning.values import Plan
 
 NAME = "visits"
-"""Back end name of the rule and the search; a unit of work is one stock entry or line examined."""
+"""Name of the back end of the start rule and of the search, which count the stock entries and lines
+that they examine as units of work."""
 
 
 def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:

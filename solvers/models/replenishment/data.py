@@ -23,10 +23,10 @@ from numpy.typing import ArrayLike, NDArray
 from rmfs.solvers.models.checks import costs, reals
 
 LEFT = -1
-"""Marks the pod of a bundle left for later, and the station of a pod that is not brought."""
+"""Stands for no pod (of a bundle left for later) or no station (of a pod that is not brought)."""
 
 PARTS = 16
-"""Resolution of space, in parts of a space unit."""
+"""Number of parts per space unit; spaces are rounded to whole parts."""
 
 
 @dataclass(frozen=True)

@@ -27,17 +27,18 @@ def solve(
     seed: int = 0,
     start: Stocking | None = None,
 ) -> Solution[Stocking]:
-    """Repeatedly bring the pod with the greatest gain, with the bundles that gain most per space.
+    """Repeatedly bring the pod of greatest gain, with the bundles that gain most per space unit.
 
-    As bundles and space only decrease, a gain computed earlier is an upper bound, so only the pods
-    at the top of a heap are rated again. The initial rating of a pod is the gain that it would have
-    if bundles could be divided. Bundles that must be stored count as a large gain.
+    As the remaining bundles and space only decrease, a gain computed earlier is an upper bound, so
+    only the pods at the top of a heap are rated again. The initial rating of a pod is the gain that
+    it would have if bundles could be divided. Bundles that must be stored count as a large gain.
 
     Returns
     -------
-    Where bundles and pods go; ties go to the lowest pod and station. The status is LIMIT if a
-    bundle that must be stored is left, and INFEASIBLE if no pod may take such a bundle. For the
-    bound, every bundle independently chooses its best pod or is left, and trips cost nothing.
+    Where bundles and pods go; ties go to the pod and station with the lowest index. The status
+    is LIMIT if a bundle that must be stored is left, and INFEASIBLE if no pod may take such a
+    bundle. For the bound, every bundle independently chooses its best pod or is left, and trips
+    cost nothing.
     """
     begin = perf_counter()
     best = np.minimum(-data.worth_s.max(axis=1, initial=-math.inf), data.leave_s)
@@ -115,14 +116,15 @@ class Filling:
         self._room[station] -= sum(self._space[bundle] for bundle in bundles)
 
     def gain(self, pod: int, station: int, wanted: list[int]) -> tuple[float, list[int]]:
-        """Return the gain of bringing a pod with the wanted bundles that fit, and these bundles.
+        """Return the gain of bringing a pod for the wanted bundles that fit, and these bundles.
 
         Parameters
         ----------
         pod, station
             The pod and the station.
         wanted
-            Bundles, the most wanted first; those stored already are passed over.
+            Bundles in the order in which the pod should take them; those already stored are
+            passed over.
         """
         room = min(float(self._data.pod_space[pod]), self._room[station])
         total, chosen = -float(self._data.trip_s[pod, station]), []

@@ -20,7 +20,8 @@ def polished(data: Replenishment, stocking: Stocking) -> Stocking:
     data
         The problem.
     stocking
-        Pods and bundles within their capacities; bundles that must be stored may be missing.
+        A stocking within the capacities of pods and stations; bundles that must be stored may be
+        left.
 
     Returns
     -------

@@ -9,7 +9,7 @@ Bundles go to pods (x), pods to stations (y); the load w of a pod counts at its 
     w_{ps} \le podspace_p\, y_{ps}, \quad \sum_p w_{ps} \le stationspace_s
 
 Splitting x by stations instead would be equivalent but would multiply the columns by the number of
-stations. Spaces are counted in parts of a unit, so all numbers except the costs are integers.
+stations. Spaces are counted in parts of a space unit, so all numbers except the costs are integers.
 """
 
 from __future__ import annotations

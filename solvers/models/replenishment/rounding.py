@@ -1,8 +1,8 @@
 """Rounding of the relaxation: its fractions say which pods to bring, and with which bundles.
 
-The relaxation is tight and is solved in a fraction of the time of the integer program, so its
-fractions are a good guide, and its value is a bound. This resembles fix-and-dive heuristics; the
-greedy rule decides what the fractions leave open.
+The relaxation is tight and is solved much faster than the integer program; its fractions are a good
+guide, and its value is a bound. This resembles fix-and-dive heuristics; the greedy rule decides
+what the fractions leave open.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 r"""The worth of a bundle in a pod: the robot time that its units save by raising the pile-on.
 
-On each visit, a pod can serve the demand for its SKUs that has accumulated. Let :math:`D_k`, the
+On each visit, a pod can serve the accumulated demand for its SKUs. Let :math:`D_k`, the accumulated
 demand for SKU k on a visit, be Poisson with mean :math:`\mu_k`. A pod with q units of k serves
 :math:`g_k(q) = E[\min(q, D_k)]` of the units demanded, so u more units add the *coverage*
 :math:`g_k(q + u) - g_k(q)`, which is large if the SKU is in demand and scarce, and small if it is
@@ -41,11 +41,11 @@ def bundle_worth_s(
     Parameters
     ----------
     stock
-        Units of each SKU in each pod, including bundles assigned to it, shape (K, P).
+        Units of each SKU in each pod, including bundles already assigned to the pod, shape (K, P).
     sku, units
         SKU and units of each bundle, shape (B,).
     wanted_per_visit
-        Units of each SKU demanded by orders between two visits of a pod, shape (K,).
+        Mean number of units of each SKU that orders demand between two visits of a pod, shape (K,).
     affinity
         Mean number of lines of SKU h ordered with a line of SKU k (row k), shape (K, K). Default:
         none.

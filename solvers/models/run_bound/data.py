@@ -71,7 +71,7 @@ class PickStations:
 
     @property
     def change_s(self) -> NDArray[np.float64]:
-        """Least time between two picks from consecutive pods, shape (S,), in s."""
+        """Least time from the last pick of a visit to the first of the next, shape (S,), in s."""
         return np.maximum(self.unit_transfer_s, self.unit_pick_s + self.changeover_s)
 
 
@@ -84,7 +84,7 @@ class Refill:
     bundle_transfer_s
         Time for which one bundle occupies the station and the robot, in s, positive.
     inbound_s, outbound_s
-        As for pick stations.
+        As for `PickStations`.
     bundle_units
         Maximum number of units in a bundle.
     bundles_per_visit
@@ -238,7 +238,7 @@ class RunBound:
 
     @property
     def end_effect_s(self) -> float:
-        """Maximum time per robot that its counted visits take outside the window, in s.
+        """Maximum time, per robot, that counted visits take outside the window, in s.
 
         This is a drive in, a service and a drive out.
         """

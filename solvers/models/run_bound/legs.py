@@ -1,9 +1,9 @@
 r"""The least robot time of a visit for bringing its pod and taking it away.
 
 A pod comes to a station from a storage location, where it was lifted, or directly from another
-station; it leaves to one or the other. A drive from or to storage belongs to one visit; a drive
-between two stations is shared by two visits, each of which is charged one half. With driving times
-t and storage locations l, the times of station s are
+station; it leaves for a storage location or another station. A drive from or to storage belongs to
+one visit; a drive between two stations is shared by two visits, each of which is charged one half.
+With driving times t and storage locations l, the times of station s are
 
 .. math::
 
@@ -38,7 +38,7 @@ def visit_legs(
     between_s: NDArray[np.float64],
     transfer_s: float,
 ) -> Legs:
-    """Compute the drives charged to a visit of each station; arrays begin with the pick stations.
+    """Compute the robot time charged to a visit of each station; pick stations come first.
 
     Parameters
     ----------

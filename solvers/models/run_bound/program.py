@@ -23,17 +23,18 @@ changeover:
    robot's first visit, and the last service and the drive out of its last visit, can lie outside
    the window: at most E seconds per robot (`RunBound.end_effect_s`).
 6. Content: :math:`\sum_s n_s \le \sum_p K_p y_p + g \sum_q m_q`, :math:`0 \le y_p \le 1`,
-   :math:`\sum_p y_p \le \sum_s v_s`. A unit picked in the window was in its pod p at the start (one
-   of at most :math:`K_p`) or has come since in a bundle of at most g units; and there are no more
-   pods with picks than visits. Integrality of :math:`y_p` is relaxed.
+   :math:`\sum_p y_p \le \sum_s v_s`, where :math:`y_p` is 1 if units are picked from pod p. A unit
+   picked in the window was in its pod p at the start (one of at most :math:`K_p`) or has come since
+   in a bundle of at most g units; and there are no more pods with picks than visits. Integrality of
+   :math:`y_p` is relaxed.
 7. Demand: :math:`\sum_s n_s \le D`, the number of units asked for.
 8. Slots: :math:`n_s \le l_s + U C_s (v_s + 1)`, :math:`\sum_s l_s \le L`. An order is *lone* if one
    visit serves it whole, otherwise *spread*. Of the :math:`n_s` units, :math:`l_s` go to lone
    orders, which have at most L units in total. A spread order served in a visit was open when the
    visit began or is still open when it ends, so a visit serves at most :math:`2 C_s` of them, with
-   :math:`C_s` slots. Each spread order needs two visits, except for orders cut off by either end of
-   the window, at most :math:`C_s` at each end. So there are no more than :math:`C_s (v_s + 1)`
-   spread orders, of at most U units each.
+   :math:`C_s` slots. Each spread order needs at least two visits, except for orders cut off by
+   either end of the window, at most :math:`C_s` at each end. So there are no more than :math:`C_s
+   (v_s + 1)` spread orders, of at most U units each.
 
 So the counts of every run are a feasible point, and their total is at most the optimum. The
 reported bound is not the optimum found by a solver but the dual value of its multipliers, made dual

@@ -28,7 +28,8 @@ def single_bounds(data: RunBound) -> dict[str, float]:
 
     Returns
     -------
-    Units per hour by name; each is at least the bound of the linear program, up to rounding.
+    The bounds by name, in units per hour; each is at least that of the linear program, up to
+    rounding.
     """
     picking = data.picking
     cadence = picking.cadence_s

@@ -5,7 +5,8 @@ kept. The orders that a pod would serve in part are opened while slots are free,
 fewest SKUs first. A second branch opens only orders of which the pod serves at least half of the
 missing SKUs. Plans are ranked by the number of SKUs that their orders still miss in total; SKUs of
 open orders count twice, as an open order holds a slot. All plans of a step are scored together, by
-one matrix product. Deterministic: ties go to the plan kept earlier, then to the lower pod.
+one matrix product. Deterministic: ties go to the plan kept earlier, then to the pod with the lower
+index.
 """
 
 from __future__ import annotations

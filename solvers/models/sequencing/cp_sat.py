@@ -1,4 +1,4 @@
-"""Rack sequencing, solved by CP-SAT; the horizon is the length of a heuristic plan."""
+"""Rack sequencing, solved by CP-SAT, with at most as many visits as a heuristic plan."""
 
 from __future__ import annotations
 

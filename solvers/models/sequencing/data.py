@@ -1,4 +1,4 @@
-r"""Rack sequencing at one pick station: the problem, a plan, and its rules.
+r"""Rack sequencing at one pick station: the problem, and the conditions that a plan must meet.
 
 Orders are processed with at most C of them open at a time, pods visit the station one after the
 other, and an open order takes from a visiting pod every SKU it still misses. The number of visits
@@ -141,7 +141,7 @@ def finish(data: Sequencing, plan: VisitSequence) -> Integers:
 
 
 def violations(data: Sequencing, plan: VisitSequence) -> list[str]:
-    """Return which rules a plan breaks.
+    """Return which conditions a plan violates.
 
     Parameters
     ----------

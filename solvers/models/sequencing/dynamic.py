@@ -6,7 +6,7 @@ orders by itself if there is a slot, and some of the orders that it serves in pa
 (The states are those of Justkowiak, Kovalyov, Pesch 2024: completed orders, open orders, missing
 SKUs.) Each visit costs 1; the remaining cost is estimated by the largest number of visits that any
 single order still needs. As this estimate is never too high, the first complete state is optimal,
-and the smallest estimate in the queue is always a valid bound.
+and the smallest estimate among the states not yet examined is always a valid bound.
 """
 
 from __future__ import annotations

@@ -77,7 +77,7 @@ def still_open(data: Sequencing, pods: Integers) -> tuple[Integers, int]:
     data
         The input.
     pods
-        The visits.
+        The visiting pods in sequence, shape (T,).
 
     Returns
     -------

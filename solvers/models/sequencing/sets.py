@@ -1,6 +1,6 @@
 """The problem as bit sets without irrelevant pods and SKUs, for the search methods.
 
-SKUs that no order needs are dropped, and so are pods whose useful SKUs are all on another pod (a
+SKUs that no order needs are dropped, and so are pods whose needed SKUs are all on another pod (a
 pod that can do more never costs more). Of equal pods the one with the lowest index is kept.
 """
 
@@ -20,9 +20,9 @@ class Sets:
     Parameters
     ----------
     needs
-        SKUs of each order.
+        Needed SKUs of each order.
     holds
-        Useful SKUs of each remaining pod.
+        Needed SKUs of each remaining pod.
     pod
         The remaining pods in the numbering of the input, shape (len(holds),).
     """
@@ -50,7 +50,10 @@ def reduce(data: Sequencing) -> Sets:
 
 
 def useful_pods(data: Sequencing) -> Integers:
-    """Return the pods with needed SKUs that no other pod can replace, in ascending order.
+    """Return, in ascending order, the pods that hold needed SKUs and are not dominated.
+
+    A pod is dominated if another pod holds all of its needed SKUs and at least one more, or if a
+    pod with a lower index holds the same needed SKUs.
 
     Parameters
     ----------

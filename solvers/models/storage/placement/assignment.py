@@ -22,18 +22,18 @@ def solve(
 
 
 def solve_by(data: Placement, solver: Solver) -> Solution[NDArray[np.int64]]:
-    """Find the cheapest place of every pod by a solver of assignments.
+    """Find the cheapest place of every pod by a solver of assignment problems.
 
     Parameters
     ----------
     data
         The problem.
     solver
-        The solver.
+        Name of the solver of assignment problems.
 
     Returns
     -------
-    The place of each pod, shape (P,); work is the number of table entries read.
+    The place of each pod, shape (P,); work is the number of cost entries read.
     """
     return solve_by_assignment(
         lambda: data.cost_s, lambda column: column, lambda place: objective(data, place), solver

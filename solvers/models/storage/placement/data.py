@@ -34,7 +34,8 @@ class Placement:
         Robot time that a future visit takes between each place and the stations, both ways, shape
         (L,), in s.
     visits
-        Expected visits of each pod before it is moved again, shape (P,); see `expected_visits`.
+        Number of visits to stations that each pod is expected to make from its new place, shape
+        (P,); see `expected_visits`.
 
     Raises
     ------
@@ -55,7 +56,7 @@ class Placement:
 
     @property
     def cost_s(self) -> NDArray[np.float64]:
-        """Robot time of each pair, now and later, shape (P, L), in s."""
+        """Robot time of each pair of pod and place, now and later, shape (P, L), in s."""
         return self.travel_s + np.outer(self.visits, self.access_s)
 
 

@@ -9,8 +9,8 @@ Here :math:`x_{sz}` is 1 if stay s is in zone z, and zone z has :math:`k_z` plac
 from the moment when a place is assigned to a pod until the pod has left it, ``[begin, end)``.
 (Weidinger, Boysen, Briskorn 2018 decide on single places, that is, zones of one place.) Places of a
 zone are interchangeable: if no more than :math:`k_z` stays overlap at any time, each can have a
-place of its own, because interval graphs are perfect. A pod that is already stored is a stay that
-begins now and is allowed only in its present zone.
+place of its own, because interval graphs are perfect. For a pod that is already stored, there is
+a stay that begins now and is allowed only in the present zone of the pod.
 """
 
 from __future__ import annotations

@@ -5,10 +5,10 @@ r"""The integer program, with the pods of each zone carried over from period to 
     y_{zt} = y_{z,t-1} + \sum_{s \text{ begins in } t} x_{sz}
     - \sum_{s \text{ is over in } t} x_{sz}, \qquad 0 \le y_{zt} \le k_z
 
-where :math:`y_{zt}` is the number of pods in zone z in period t. This is equivalent to one row per
-maximal set of simultaneous stays, but the number of entries grows linearly with the number of stays
-instead of quadratically. For each zone by itself the matrix is a network matrix, so the relaxation
-is tight.
+where :math:`y_{zt}` is the number of pods in zone z in period t (`Stays.periods`). This is
+equivalent to one constraint per maximal set of simultaneous stays, but the number of nonzeros grows
+linearly with the number of stays instead of quadratically. For each zone by itself the matrix is a
+network matrix, so the relaxation is tight.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def program(data: Stays, *, whole: bool) -> LinearProgram:
 
     Returns
     -------
-    The program; its first S * Z columns are x, row by row.
+    The program; its first S * Z columns are x, stay by stay.
     """
     stays, zones = data.cost_s.shape
     first, last, periods = data.periods

@@ -13,7 +13,7 @@ from rmfs.solvers.models.storage.zones.data import ZonePlan, Zones, objective, t
 from rmfs.solvers.models.storage.zones.prices import price_bound
 
 _PORTIONS = 16
-"""Number of portions in which a class is placed, so that congestion affects the later ones."""
+"""Number of portions in which a class is placed, so that congestion affects later portions."""
 
 
 def solve(
@@ -21,9 +21,9 @@ def solve(
 ) -> Solution[ZonePlan]:
     """Place classes in portions, most visited first, each portion where a visit takes least time.
 
-    The time includes the delay that one more visit causes to itself and to other visits. The price
-    of a zone is the least that a pod there saves compared with the best zone that still has room; 0
-    if no zone has room.
+    The time includes the delay that one more visit causes to itself and to other visits. A pod
+    saves robot time compared with the best zone that still has room; the price of places in a zone
+    is the smallest such saving among the pods there, or 0 if no zone has room.
 
     Returns
     -------

@@ -11,8 +11,8 @@ from rmfs.solvers.models.storage.zones.data import Zones
 def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
     """Turn an almost feasible table of pods per class and zone into an exactly feasible one.
 
-    Negative numbers become 0, rows are scaled to the number of pods, and excess pods of a zone are
-    moved to zones with room, lowest index first.
+    Negative numbers become 0, each row is scaled to the number of pods of its class, and excess
+    pods of a zone are moved to zones with room, lowest index first.
 
     Parameters
     ----------

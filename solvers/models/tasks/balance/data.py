@@ -39,8 +39,8 @@ class Balance:
     leave_s
         Cost of leaving each task for later, shape (T,), in s; +inf if it must be done.
     due_s
-        Time until each task should be at its station, shape (T,), in s; negative if it is already
-        late, +inf without a due time.
+        Time from now until the pod of each task is due at its station, shape (T,), in s; negative
+        if it is already late, +inf without a due time.
     station
         Station of each task, shape (T,).
     queue

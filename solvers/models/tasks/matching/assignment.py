@@ -24,18 +24,18 @@ def solve(
 
 
 def solve_by(data: Matching, solver: Solver) -> Solution[NDArray[np.int64]]:
-    """Find the robot of each task by the given solver of assignments.
+    """Find the robot of each task by the given solver of assignment problems.
 
     Parameters
     ----------
     data
         The problem.
     solver
-        The solver.
+        Name of the solver of assignment problems.
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); work is the number of table entries read.
+    The robot of each task, or `LEFT`, shape (T,); work is the number of cost entries read.
     """
     robots, tasks = data.travel_s.shape
 

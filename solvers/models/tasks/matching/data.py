@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.checks import costs
 
 LEFT = -1
-"""Marks the robot of a task that is left for later."""
+"""Stands for no robot, for a task that is left for later."""
 
 
 @dataclass(frozen=True)

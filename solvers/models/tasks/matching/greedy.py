@@ -25,8 +25,8 @@ def solve(
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); ties go to the lowest robot and task. The status
-    is LIMIT if a task that must be done is left.
+    The robot of each task, or `LEFT`, shape (T,); ties go to the robot and task with the lowest
+    index. The status is LIMIT if a task that must be done is left.
     """
     begin = perf_counter()
     robots, tasks = data.travel_s.shape

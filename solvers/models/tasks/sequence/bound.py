@@ -62,7 +62,7 @@ def relaxed_bound(data: TaskSequence) -> float:
 def from_robots(
     data: TaskSequence,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the ways of robots to first tasks, via the best place if they carry a pod.
+    """Return the drives of robots to first tasks, via the best place if they carry a pod.
 
     Parameters
     ----------
@@ -71,10 +71,10 @@ def from_robots(
 
     Returns
     -------
-    Three arrays, in s, infinite for ways that are not allowed: the time at which each robot can be
-    at each pod, shape (R, T); its drive there less its storing drive, shape (R, T); and its storing
-    drive, shape (R,). The storing drive takes the pod that the robot carries to the nearest place;
-    it is 0 for a robot without a pod.
+    Three arrays, in s, infinite for drives that are not allowed: the time at which each robot can
+    be at each pod, shape (R, T); its drive there less its storing drive, shape (R, T); and its
+    storing drive, shape (R,). The storing drive takes the pod that the robot carries to the nearest
+    place; it is 0 for a robot without a pod.
     """
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
     stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)

@@ -64,8 +64,8 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
     keep
         A plan.
     tasks
-        Number of tasks kept after each owner and each robot without a pod, and of such owners and
-        robots kept before each task.
+        Number of next tasks kept for each owner and each robot without a pod, and number of owners
+        and robots without a pod kept as predecessors of each task.
     places
         Number of places kept for each pair of owner and task, and for the end of each route.
 

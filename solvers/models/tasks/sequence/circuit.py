@@ -29,8 +29,8 @@ _DEPOT = 0
 class Circuit:
     """The model of one problem.
 
-    Nodes are numbered: depot, robots, tasks (an owner of a pod is node 1 + owner), then the pairs
-    of owner and place.
+    Nodes are numbered: depot, robots, tasks (the owner of a pod, numbered as in `Ways`, is node
+    1 + owner), then the pairs of owner and place.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ class Circuit:
         Parameters
         ----------
         routes
-            Feasible routes; parts that are not among the model's arcs are not hinted.
+            Feasible routes; arcs that the model lacks are left out of the hint.
         """
         used = self._arcs_of(routes)
         touched = {node for arc in used for node in arc}

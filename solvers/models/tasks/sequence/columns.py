@@ -15,8 +15,9 @@ search for a cheapest route ends early. All costs are whole ticks, so the bound 
 tick.
 
 At the end HiGHS chooses whole routes among those known. If a gap remains, every route that costs
-less than its robot's cheapest one plus the gap is listed: no other route can be part of a better
-plan (Baldacci, Christofides, Mingozzi 2008), so the best choice among them is an optimum.
+less, at the prices of the best bound, than its robot's cheapest one plus the gap is listed: no
+other route can be part of a better plan (Baldacci, Christofides, Mingozzi 2008), so the best choice
+among them is an optimum.
 """
 
 from __future__ import annotations

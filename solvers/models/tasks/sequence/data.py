@@ -2,8 +2,8 @@
 
 A *task* consists of fetching a pod, bringing it to its station, having it served, and storing it at
 a free place. A robot does tasks one after another; a robot that initially carries a pod stores it
-first. The distance to the next pod depends on where the last one is stored, so places are chosen
-together with the sequence of tasks. This is a generalised travelling-salesman problem as in
+first. The distance to the next pod depends on where the previous one is stored, so places are
+chosen together with the sequence of tasks. This is a generalised travelling-salesman problem as in
 Gharehgozli and Zaerpour 2020, with several robots and time windows.
 
 Places vacated by fetched pods are not available within the same plan; a new plan is made before
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.checks import costs, flags, integers, reals
 
 NONE = -1
-"""Marks the place of a pod that is not moved."""
+"""Stands for no place, for a pod that is not moved."""
 
 TICKS_PER_S = 1000
 """Input times are rounded to milliseconds, so that all back ends solve the same problem."""
@@ -52,7 +52,7 @@ class TaskSequence:
     bring_s
         Lift and drive of the pod of each task to its station, shape (T,), in s.
     service_s
-        Time at the station, shape (T,), in s.
+        Time that the pod of each task spends at its station, shape (T,), in s.
     store_s
         Drive from the station of each task to each place, set-down included, shape (T, L), in s.
     earliest_s, latest_s

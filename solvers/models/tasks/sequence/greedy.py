@@ -48,8 +48,8 @@ def solve(
 
     Returns
     -------
-    The routes; ties go to the lowest robot and place. The status is LIMIT if a task that must be
-    done is left. The bound is that of `relaxed_bound`.
+    The routes; ties go to the robot and place with the lowest index. The status is LIMIT if a
+    task that must be done is left. The bound is that of `relaxed_bound`.
 
     Raises
     ------

@@ -39,11 +39,11 @@ _STEPS = 100
 """Number of time steps of the estimates."""
 
 _LONGEST_S = 3600.0
-"""Time up to which routes are estimated if nothing limits them, in s."""
+"""Latest time that the estimates cover if no time window or due time limits it, in s."""
 
 
 class Prices(NamedTuple):
-    """Prices in parts of a tick.
+    """Prices of tasks and places, in parts of a tick.
 
     Attributes
     ----------
@@ -122,7 +122,7 @@ class Pricing:
     ticks
         The problem.
     prices
-        The prices.
+        Prices of tasks and places.
     remembered
         Mask of the places that a route may use only once, shape (L,).
     every
