@@ -92,15 +92,15 @@ class Comparison:
 
 
 def compare(sources: Sequence[str | Path], *, confidence: float = 0.95) -> list[Comparison]:
-    """Compare every source with the first.
+    """Compare every further source with the first, or the arms of a single source.
 
     Parameters
     ----------
     sources
         Run folders, folders of experiments, arms of these (`FOLDER#ARM`), or .csv and .parquet
-        tables of footprints. If there is a single source, each of its arms is compared with the
-        first one. If there are several sources with several arms, arms of the same name are
-        compared.
+        tables of footprints. If there is a single source, its first arm is compared with each of
+        its other arms. If there are several sources and any of them has several arms, arms of the
+        same name are compared.
 
     Raises
     ------
@@ -286,8 +286,8 @@ def chosen_columns(
 ) -> list[str]:
     """Return the columns to show.
 
-    These are the requested columns. If none are requested, they are all reproducible columns that
-    differ (with `everything`) or the main ones (without it).
+    These are the requested `columns`. If none are requested, they are the main columns or, with
+    `everything`, all reproducible columns whose values differ.
 
     Raises
     ------

@@ -36,8 +36,8 @@ class Foresight(Measure):
     """Possible savings in a run by better storage locations, or by a better choice of robots.
 
     The measure is valid only for runs on one tier without repositioning. Savings are given in s and
-    as shares of the time of all robots. Each is an upper bound on what the decision could save if
-    nothing else changed.
+    as shares of the time of all robots. Each saving is an upper bound on what other decisions of
+    PSA, or of TA, could have saved if nothing else had changed.
     """
 
     columns = (
@@ -108,8 +108,8 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 
     Returns
     -------
-    The stays, with one zone per storage location; and their total cost, in s, at the storage
-    locations that were used in the run.
+    The stays, as data of a model in which each storage location is a zone of its own; and their
+    total cost, in s, at the storage locations that were used in the run.
     """
     loaded = trips[trips["loaded"]]
     lifts = {

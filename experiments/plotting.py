@@ -240,7 +240,11 @@ def _progression(folder: Path, columns: list[str], path: Path | None, wish: Wish
 
 
 def bin_of(end_s: float) -> float:
-    """Return a bin width for runs of this length: about 24 bins of whole minutes, up to 1 h."""
+    """Return a bin width in s for runs that end at `end_s`.
+
+    It is the smallest of several widths from a minute to half an hour that gives at most 24 bins;
+    otherwise, it is an hour.
+    """
     for width in (60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0):
         if end_s / width <= 24:
             return width

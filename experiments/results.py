@@ -33,8 +33,9 @@ def load(folder: str | Path, *, table: str = "footprint") -> pd.DataFrame:
     Returns
     -------
     For `footprint`, one row per finished run, sorted by arm (in design order) and seed: `arm`, a
-    column per factor, `stage`, `replication`, the footprint, `run`, and the columns on how the run
-    was made. Other tables start with `arm`, the factors, `replication` and `seed`.
+    column per factor, `stage`, `replication`, the footprint, `run` (a hash that identifies the
+    run), and the columns on how the run was made. Other tables start with `arm`, the factors,
+    `replication` and `seed`.
 
     Raises
     ------
@@ -112,8 +113,8 @@ def reproducible_table(frame: pd.DataFrame) -> pd.DataFrame:
     """Return the columns that are equal whenever an experiment is repeated.
 
     Rows are sorted by arm and seed. Measured columns (such as wall times) and the columns on how a
-    run was made are excluded. Two experiments are identical if these tables, written as CSV, are
-    equal byte for byte.
+    run was made are excluded. Two experiments are identical if their tables of these columns,
+    written as CSV, are equal byte for byte.
     """
     gone = {*names("footprint")} - {*reproducible("footprint")}
     gone |= {column.name for column in learnt() if column.measured}

@@ -34,8 +34,8 @@ class Case:
     Attributes
     ----------
     duration_s
-        Simulated seconds. There is no warm-up, so the time to build the first tables for the search
-        for routes is included.
+        Simulated seconds. There is no warm-up, so the measured times include building the first
+        tables for the search for routes.
     """
 
     layout: str

@@ -72,7 +72,7 @@ class Store:
 
     @contextmanager
     def locked(self) -> Iterator[None]:
-        """Lock the folder against other processes; remove half-written files of interrupted ones.
+        """Lock the folder against other processes; remove files left half-written earlier.
 
         Raises
         ------
@@ -179,7 +179,7 @@ class Store:
         return frame.drop_duplicates("run", keep="last", ignore_index=True)
 
     def finished(self, tables: Sequence[str] = ()) -> set[str]:
-        """Return the keys of the runs that are stored with all of these tables."""
+        """Return the keys of the runs that are stored with all of `tables`."""
         keys = set(self.rows(columns=[])["run"])
         for table in tables:
             keys &= {path.stem for path in (self.folder / table).glob("*.parquet")}

@@ -33,7 +33,7 @@ COLUMN = "units_per_h"
 
 @dataclass(frozen=True, repr=False)
 class Study:
-    """A finished experiment.
+    """An experiment and its results.
 
     Attributes
     ----------

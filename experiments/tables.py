@@ -324,7 +324,7 @@ def _called(method: str) -> str:
 
 
 def digits(halves: pd.Series, values: pd.Series) -> int:
-    """Return the number of decimal places that shows the median half width with two digits."""
+    """Return how many decimal places show the median half width to two significant digits."""
     known = [h for h in halves.dropna() if h > ROUNDING and isfinite(h)]
     if not known:
         if ((values.dropna() - values.dropna().round()).abs() < ROUNDING).all():

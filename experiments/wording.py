@@ -29,7 +29,7 @@ def heading(column: str) -> str:
 
 
 def p_value(p: float) -> str:
-    """Format a p value as in papers: with three digits, or as smaller than `SMALL`."""
+    """Format a p value as in papers: with three decimal places, or as smaller than `SMALL`."""
     if p != p:
         return "-"
     return f"<{SMALL}" if p < SMALL else f"{p:.3f}"

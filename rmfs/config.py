@@ -101,7 +101,7 @@ def parse_override(text: str) -> tuple[list[str], Any]:
     Raises
     ------
     InputError
-        If there is no `=`, the key is empty, or the value is too long or too deeply nested.
+        If there is no `=`, the key is empty, or the value has too many digits or levels of nesting.
     """
     key, separator, value = text.partition("=")
     if not separator or not key.strip():

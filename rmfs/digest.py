@@ -17,8 +17,8 @@ A dataclass can thus get a new field without changing the hash of values in whic
 def digest(value: object) -> str:
     """Return the SHA-256 of a value, 64 hexadecimal digits.
 
-    The value is made of arrays, numbers, strings, dataclasses, dicts, tuples and lists. An object
-    with a method `digested` is represented by the return value of that method.
+    The value may consist of arrays, numbers, strings, dataclasses, dicts, tuples and lists. An
+    object with a method `digested` is represented by the return value of that method.
     """
     state = hashlib.sha256()
     _feed(state, value)

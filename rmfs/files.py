@@ -98,7 +98,8 @@ def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True
 
     The temporary folder is created before any work is done, so that a target that cannot be written
     is noticed early. On an error or an interruption it is removed, together with parent folders
-    created for it. In the meantime, the target is locked against other processes.
+    created for it. While the context is open, the target is locked against other
+    processes.
 
     Parameters
     ----------
@@ -113,8 +114,8 @@ def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True
     Raises
     ------
     InputError
-        If the target cannot be written, is locked by another process, contains the working
-        directory, or exists and is of another kind or must not be replaced.
+        If the target cannot be written, is locked by another process or contains the working
+        directory, or if it exists and must not be replaced.
     """
     target = target.absolute()
     here = Path.cwd()

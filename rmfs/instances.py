@@ -26,7 +26,7 @@ def locate(kind: Kind, name_or_path: str) -> Path:
     Raises
     ------
     InputError
-        If neither exists, in which case the message lists the shipped names, or the path is
+        If neither exists (the message then lists the shipped names), or if the path is
         inaccessible.
     """
     path = Path(name_or_path)

@@ -25,7 +25,10 @@ if TYPE_CHECKING:
 
 
 class MotionCounts(TravelTimes, Protocol):
-    """The part of the traffic model that counts motion, starting after the warm-up."""
+    """The part of the traffic model that counts motion.
+
+    Unless stated otherwise, counts start at time zero and again at the end of the warm-up.
+    """
 
     def motion(self) -> dict[str, NDArray[Any]]:
         """Return arrays of distances (m) and times (s), one value per robot, by name."""
@@ -44,7 +47,7 @@ class MotionCounts(TravelTimes, Protocol):
         ...
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return arrays of energies in J, such as drawn and charged, one value per robot, by name.
+        """Return arrays of energies (J) and charging times (s), one value per robot, by name.
 
         May be called only if the scenario models energy.
         """
@@ -58,7 +61,10 @@ class MotionCounts(TravelTimes, Protocol):
         ...
 
     def plans(self) -> dict[str, NDArray[Any]]:
-        """Return the searches for plans that took simulated time, as columns by name."""
+        """Return the searches for plans since time zero, as columns by name.
+
+        There are none if searches take no simulated time.
+        """
         ...
 
     def counters(self) -> dict[str, float]:
@@ -184,7 +190,7 @@ class Observer:
         """
 
     def bundles_released(self, pod: int) -> None:
-        """Report that RPS released the bundles of a pod: ROA and TA may now act on its choice."""
+        """Report that RPS released the bundles promised to a pod: ROA and TA may act on them."""
 
     def bundle_sent(self, bundle: Bundle) -> None:
         """Report that ROA chose the station of a bundle (`bundle.station`)."""
@@ -208,7 +214,10 @@ class Observer:
         """
 
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
-        """Report that a station is busy with one unit, bundle, visit or robot in [from_s, to_s)."""
+        """Report that a station is busy during [from_s, to_s).
+
+        It handles one unit or bundle, serves one visit, charges one robot or swaps its battery.
+        """
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
         """Report that a robot starts a task.

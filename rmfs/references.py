@@ -104,7 +104,7 @@ def anchored(reference: str, folder: Path | None = None) -> str:
     Parameters
     ----------
     folder
-        Folder where a file is looked for first. Default: the working directory.
+        Folder in which a file is looked for before the working directory. Default: none.
 
     Returns
     -------

@@ -71,7 +71,7 @@ def units_per_h_keeping_stock(
     layout, skus, times, duration_s
         As for `units_per_h_bound`; of the layout's robots, only the kinds matter.
     fleets
-        Numbers of robots.
+        The fleets, each as a number of robots.
     """
     data = run_bound(layout, skus, times, duration_s)
     if data is None:

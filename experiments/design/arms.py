@@ -83,10 +83,10 @@ class Level:
     name
         The part of the arm's name that stands for the level.
     raw
-        For each column, the values by which exclusions may refer to this level.
+        For each column, the values by which the design's `exclude` may refer to this level.
     of_grid
-        Whether the level belongs to a grid: then the arm's name contains the factor and the level.
-        The name of an arm of a list contains the level alone.
+        Whether the level belongs to a factor of the grid, not to the design's list of arms. In the
+        arm's name, a level of the grid stands after its factor (`factor=level`).
     """
 
     shown: dict[str, Any]

@@ -84,7 +84,7 @@ class Until(Strict):
 
 
 class Select(Strict):
-    """Selection of the best arm with a stated error: procedure KN of Kim and Nelson (2001)."""
+    """Selection of the best arm with limited error probability: KN of Kim and Nelson (2001)."""
 
     procedure: Literal["kim-nelson"] = "kim-nelson"
     column: Measure

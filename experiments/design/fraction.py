@@ -48,8 +48,8 @@ def main_effects(levels: Sequence[Sequence[object]]) -> NDArray[np.float64]:
 
     Returns
     -------
-    Columns for a constant and, for each factor, all levels except one, coded as deviations from the
-    mean.
+    A column of ones and, for each level of each factor except the factor's last, a column that is 1
+    at this level, -1 at the last level, and 0 otherwise (effect coding).
     """
     columns = [np.ones(len(levels))]
     for factor in zip(*levels, strict=True):

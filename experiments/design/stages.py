@@ -30,7 +30,8 @@ class Wanted:
     arm
         Name of the arm.
     replication
-        Number of the seed in the design.
+        Seed as given in the design. Without common random numbers, the run's seed is derived from
+        it and the arm.
     """
 
     stage: str
@@ -49,7 +50,8 @@ class Schedule:
     complete
         Whether no further runs will be added.
     remarks
-        What the stages have decided from the results, such as the arms that go on, one line each.
+        What the stages have decided from the results, such as which arms take part in the next
+        stage, one line each.
     """
 
     runs: list[Wanted]

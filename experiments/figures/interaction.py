@@ -31,7 +31,7 @@ def interaction(
     confidence: float = 0.95,
     legend: bool = True,
 ) -> None:
-    """Draw means over the levels of a factor, with one line per level of another factor.
+    """Draw the mean at each level of a factor, with one line per level of another factor.
 
     Parallel lines mean that there is no interaction. The interval of a point is computed from the
     means over all arms with the point's two levels, seed by seed. Combinations missing from the

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def lines(
     frame: pd.DataFrame, x: str, column: str, by: str, ax: Axes, *, confidence: float = 0.95
 ) -> None:
-    """Draw the means of a measure over another column, with one line per level of a factor.
+    """Draw the mean of a measure at each value of `x`, with one line per value of `by`.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def lines(
     column
         The measure.
     by
-        Column with one line per level.
+        Column with one line per value.
     """
     for number, level in enumerate(frame[by].unique()):
         runs = frame[frame[by] == level]

@@ -27,7 +27,7 @@ FORMATS = ("png", "pdf", "svg")
 def levels(frame: pd.DataFrame, factor: str) -> dict[str, pd.DataFrame]:
     """Return the rows of each level of a factor, in the order of first appearance.
 
-    The level of arms that keep a parameter's value from the file is called "none".
+    An empty cell is the level "none": the arm leaves the parameter as in the input file.
     """
     text = frame[factor].astype(object).map(lambda level: "none" if pd.isna(level) else str(level))
     return {str(level): frame[text == level] for level in text.unique()}

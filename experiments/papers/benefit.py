@@ -106,7 +106,7 @@ def gains(
     frame
         As `completed` returns it.
     groups
-        Columns; controllers are compared for each combination of their levels.
+        Columns. Controllers are compared separately for each combination of these columns' values.
     baseline
         Level of `controllers` that the others are compared with.
     """
@@ -136,7 +136,7 @@ def of_optimiser(
         As `completed` returns it. Each level of `controllers` is compared with the level of that
         name plus `START`, if there is one.
     groups
-        Columns; controllers are compared for each combination of their levels.
+        Columns. Controllers are compared separately for each combination of these columns' values.
     columns
         Measures to compare.
     """

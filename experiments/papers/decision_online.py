@@ -40,7 +40,8 @@ def planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]]
     Parameters
     ----------
     steps
-        Number of steps per station, as a function of the number of stations.
+        Number of steps of the neighbourhood search per station, as a function of the number of
+        stations.
     """
 
     def asked(decision: Decision) -> dict[str, Any]:

@@ -34,7 +34,7 @@ COLUMNS = (
 
 
 def picture(study: Study) -> Path:
-    """Draw a heat map of four robots."""
+    """Draw the heat map of the arm with four robots."""
     path = study.place("demonstrator-heat.png")
     last = study.plan.arms[-1].name
     heat = study.table("heat")

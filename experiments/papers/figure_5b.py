@@ -54,9 +54,10 @@ def areas(layout: Layout) -> NDArray[np.str_]:
 
 
 def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
-    """Return numbers of waypoints, visits per waypoint, and shares, per seed and area.
+    """Return how visits and waiting are spread over the areas, with one row per seed and area.
 
-    The shares are those of an area in all visits and in all waiting time.
+    A row has the area's number of waypoints, its visits per waypoint, and its shares of all visits
+    and of all waiting time, in percent.
 
     Parameters
     ----------

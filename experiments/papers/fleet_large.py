@@ -40,9 +40,9 @@ RULES = "default rules"
 
 
 def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
-    """Return bounds for runs that keep their stock, by fleet size, and the stations' capacity.
+    """Return an upper bound for each fleet size, and the stations' capacity, in units per hour.
 
-    All are in units per hour. The runs considered store at least as many units as they pick.
+    The bounds hold for all runs that store at least as many units as they pick.
     """
     arm = design.arms[0]
     own = {
@@ -61,7 +61,7 @@ def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
 def bounds(found: Mapping[int, float], limit: float) -> Table:
     """Return a table of the bound on units per hour by fleet size.
 
-    The fleets range from one robot to the smallest fleet that reaches the highest bound.
+    The rows range from one robot to the fleet size from which more robots do not raise the bound.
     """
     highest = max(found.values())
     fleets = [robots for robots, bound in found.items() if bound < highest * (1 - 1e-6)]

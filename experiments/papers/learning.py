@@ -62,7 +62,7 @@ def with_goals(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def most_units(runs: pd.DataFrame) -> float:
-    """Return an upper bound on the units that any controller can pick in one of these runs."""
+    """Return a number of units that no controller can exceed in any of these runs."""
     return float((runs["units_per_h_bound"] * runs["duration_s"]).max() / 3600.0)
 
 

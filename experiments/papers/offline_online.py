@@ -84,7 +84,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
-    """Answer the questions of an arm's family as the arm would; return the primal gaps (shares).
+    """Answer the questions of an arm's family as the arm would; return the primal gaps (0 to 1).
 
     Parameters
     ----------

@@ -79,9 +79,9 @@ def seconds(planning: str) -> float:
 def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float]:
     """Return the shortest time per plan that costs throughput, and the next shorter time, in s.
 
-    Planning costs throughput from the shortest time for which, as for all longer times in the
-    design, the confidence interval of the change lies below zero. Where there is no such time, or
-    no shorter one, nan is returned.
+    A time per plan costs throughput if the confidence interval of the change lies below zero for
+    this time and for all longer ones in the design. If no time costs throughput, the first value is
+    nan; if all do, the second is.
 
     Parameters
     ----------

@@ -56,7 +56,7 @@ RESAMPLES = 2000
 
 
 def wall_of(label: str) -> tuple[float, float]:
-    """Return number of slots (inf: any) and time to the wall, in s, from the label of a level.
+    """Read a wall's slots (inf: unlimited) and the time to it, in s, from the label of a level.
 
     Raises
     ------
@@ -70,7 +70,10 @@ def wall_of(label: str) -> tuple[float, float]:
 
 
 def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
-    """Return the walls (`wall_of`) of the levels of `orders` that respect the wall's capacity."""
+    """Return the wall (`wall_of`) of each level of `orders` that splits within its capacity.
+
+    Levels of start rules are left out.
+    """
     labels = [str(label) for label in runs[ORDERS].unique()]
     return {
         label: wall_of(label)
@@ -109,7 +112,9 @@ def break_even(slots: Sequence[float], gain: Floats) -> float:
 
 
 def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, float]:
-    """Return from how many slots on splitting picks more units per hour, and a 95 % interval.
+    """Return the break-even number of slots, and its 95 % interval.
+
+    With more slots than that, splitting picks more units per hour than whole orders.
 
     Parameters
     ----------
@@ -204,9 +209,9 @@ def even(frame: pd.DataFrame) -> Table:
     decimals = {(name, part): 0 for name in ("slots", "way, s") for part in _PARTS}
     decimals |= {("packer, s per tote", part): 1 for part in _PARTS}
     caption = (
-        "Where split orders break even with whole ones. slots: number of slots of the wall "
-        "from which on splitting picks more units per hour, with a bootstrap interval over "
-        "seeds; the smallest wall of the design may stand for smaller ones, and inf means "
+        "Where split orders break even with whole ones. slots: break-even number of slots "
+        "of the wall, above which splitting picks more units per hour than whole orders, with a "
+        "bootstrap interval over seeds; the smallest wall of the design may stand for smaller ones, and inf means "
         "none. packer: packer's time per additional tote at which pickers and packers "
         "together need the same time per unit as with whole orders. way: time to the wall at "
         "which orders are packed on average as early as with whole orders; a negative time means "

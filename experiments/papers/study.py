@@ -100,7 +100,7 @@ class Study:
 def parser(
     design: str, description: str | None, *, reference: str | None = None
 ) -> argparse.ArgumentParser:
-    """Return the parser with the options of all studies.
+    """Return a parser with the options that all studies share.
 
     Parameters
     ----------

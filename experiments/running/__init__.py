@@ -28,7 +28,8 @@ def run(
     processes
         Number of parallel runs on this machine. Default: one per available core.
     dask
-        Address of a Dask scheduler, or a cluster profile, instead of this machine.
+        Cluster on which to make the runs: address of a Dask scheduler, or a cluster profile.
+        Default: this machine.
     watcher
         Notified of progress.
 
@@ -37,7 +38,7 @@ def run(
     PlanError
         If the plan has errors.
     InputError
-        If the folder cannot be written, or there is no cluster.
+        If the folder cannot be written, or the cluster cannot be used.
     """
     from rmfs.experiments.running.cluster import DaskWorkers
     from rmfs.experiments.running.driver import drive

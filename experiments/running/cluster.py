@@ -90,7 +90,7 @@ class DaskWorkers:
 
     @property
     def slots(self) -> int:
-        """Maximum number of submitted jobs: two per worker, so that no worker waits for a job."""
+        """Maximum number of unfinished jobs: two per worker, so that no worker waits for a job."""
         with self._scheduler_there():
             workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
         threads = [int(worker["nthreads"]) for worker in workers]
@@ -104,7 +104,7 @@ class DaskWorkers:
         future.add_done_callback(self._done.put)
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended, waiting up to a given time.
+        """Return the jobs that have ended; if none has, wait up to `timeout_s` for one.
 
         Raises
         ------
@@ -165,7 +165,7 @@ def read_profile(path: Path) -> Profile:
 
 
 def job_script(path: Path) -> str:
-    """Return the script that would be submitted to the batch system for each of the jobs.
+    """Return the script of a batch job with workers, as it would be submitted to the batch system.
 
     Raises
     ------
@@ -183,7 +183,7 @@ def job_script(path: Path) -> str:
 
 
 def started(profile: Profile, source: str) -> Any:
-    """Start the cluster of a profile; with a batch system, request enough jobs for all workers.
+    """Start the cluster of a profile: on this machine, or by batch jobs for all of its workers.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from rmfs.measure.provenance import commit, version
 
 @cache
 def code() -> dict[str, Any]:
-    """Return version, commit and hash of the code that makes the runs (`rmfs.code`)."""
+    """Return the version and commit of rmfs, and the hash of its code (see `rmfs.code`)."""
     told = commit()["git_commit"]
     return {
         "rmfs_version": version(),

@@ -40,13 +40,13 @@ class Watcher(Protocol):
         """Receive the total number of runs, and how many of them are finished."""
 
     def ended(self, job: Job, outcome: Outcome) -> None:
-        """Note that a run has ended, without an error if `outcome.error` is empty."""
+        """Note that a run has ended; if `outcome.error` is empty, it was successful."""
 
     def remark(self, text: str) -> None:
         """Receive a remark that is worth a line of output."""
 
     def tick(self) -> None:
-        """Update the display; called at least about every `PATIENCE_S` seconds."""
+        """Update the display; called about every `PATIENCE_S` seconds, or more often."""
 
 
 class Silent:
@@ -67,16 +67,16 @@ class Silent:
 
 @dataclass
 class Tally:
-    """Counts of a driver's runs.
+    """Counts of the runs of an experiment.
 
     Attributes
     ----------
     wanted, finished
         Number of runs of the experiment, and number of those already stored.
     ran
-        Number of runs made by this driver.
+        Number of runs made by the driver, including failed ones.
     failed
-        Runs that failed in this driver, as pairs of arm and replication.
+        Failed runs, as pairs of arm and replication.
     """
 
     wanted: int = 0

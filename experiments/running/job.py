@@ -19,7 +19,7 @@ class Job:
     arm_digest
         Hash of everything that determines the run except its seed.
     replication
-        The seed as listed in the design; that of the run itself may be derived from it.
+        The seed as listed in the design; `seed` may be derived from it.
     files
         Hash of every input file of the design, checked by the worker.
     measures
@@ -71,7 +71,7 @@ class Outcome:
     died
         Whether the worker died without reporting an error.
     elapsed_s
-        Wall time of the job in s, including loading and tables.
+        Wall time of the job in s, including the time to load the inputs and compute the tables.
     cpu_s
         Processor time of the job in s.
     host

@@ -46,13 +46,13 @@ class Engine(Protocol):
 
     @property
     def slots(self) -> int:
-        """Return the maximum number of jobs that should be submitted at a time."""
+        """Return how many submitted jobs should be unfinished at a time, at most."""
 
     def submit(self, job: Job) -> None:
         """Start a job."""
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended; if there are none, wait for one up to a given time."""
+        """Return the jobs that have ended; if none has, wait up to `timeout_s` for one."""
 
     def close(self) -> None:
         """Stop all running jobs."""
@@ -87,7 +87,7 @@ class LocalProcesses:
 
     @property
     def slots(self) -> int:
-        """The maximum number of jobs: the number of processes."""
+        """Maximum number of unfinished jobs: the number of processes."""
         return self._processes
 
     @property
@@ -109,7 +109,7 @@ class LocalProcesses:
             self._running[receiver.fileno()] = _Running(job, process, receiver)
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended, waiting up to a given time."""
+        """Return the jobs that have ended; if none has, wait up to `timeout_s` for one."""
         receivers = [one.receiver for one in self._running.values()]
         ended = []
         for receiver in connection.wait(receivers, timeout_s):

@@ -54,7 +54,7 @@ class Estimate:
     source: str
 
     def total_s(self, runs: int, processes: int) -> float:
-        """Return the wall time of a number of runs, in s, with a number of parallel processes."""
+        """Return the wall time of `runs` runs in `processes` parallel processes, in s."""
         return self.run_s * runs / max(1, min(processes, runs))
 
 

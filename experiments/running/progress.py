@@ -19,7 +19,7 @@ LINE_EVERY_S = 10.0
 
 
 def time_left_s(begun_s: float, now_s: float, ran: int, left: int) -> float:
-    """Estimate the remaining time from the runs made so far, in s; inf before the first."""
+    """Return the remaining time in s, estimated from the runs made so far; inf if none was."""
     return (now_s - begun_s) / ran * left if ran else float("inf")
 
 

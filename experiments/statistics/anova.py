@@ -78,8 +78,8 @@ def anova(
     -------
     One row per effect, strongest first, then seeds and residual: `sum_sq df f p`, effect sizes
     `eta_sq` (share of the sum of all rows), `partial_eta_sq` with its interval
-    (`partial_eta_sq_low`, `partial_eta_sq_high`; Steiger 2004) and `omega_sq` (an estimate
-    that does not grow with the number of levels; may fall below 0).
+    (`partial_eta_sq_low`, `partial_eta_sq_high`; Steiger 2004) and `omega_sq` (`eta_sq`
+    corrected for degrees of freedom; does not grow with the number of levels; may be negative).
 
     Raises
     ------

@@ -33,8 +33,9 @@ def paired(
 
     Returns
     -------
-    `pairs`, `difference` (mean of arm minus baseline) with `low` and `high`, `relative`
-    (difference / baseline's mean), `p` of the paired t test (two-sided; nan below two pairs).
+    `pairs` (number of seeds), `difference` (mean of arm minus baseline), `low` and `high` (ends of
+    its confidence interval), `relative` (difference / baseline's mean), and `p` of the paired t
+    test (two-sided; nan for fewer than two pairs).
     """
     both = pd.concat([arm, baseline], axis=1, keys=["arm", "baseline"], join="inner").dropna()
     values = both.to_numpy(dtype=float)
@@ -86,7 +87,7 @@ def against(
     by: str = "arm",
     pair: str = "replication",
 ) -> pd.DataFrame:
-    """Compare every arm with a baseline, seed by seed, corrected for multiple comparisons.
+    """Compare every arm with a baseline, seed by seed.
 
     Parameters
     ----------
@@ -97,8 +98,9 @@ def against(
 
     Returns
     -------
-    One row per other arm: what `paired` returns, `p_holm` (Holm 1979, over all rows) and
-    `direction`: "higher", "lower" or "unclear" at the level 1 - `confidence` after correction.
+    One row per other arm: what `paired` returns, `p_holm` (`p` corrected for multiple comparisons
+    by Holm's method, over all rows; Holm 1979) and `direction`: "higher", "lower" or "unclear" at
+    the level 1 - `confidence` after correction.
 
     Raises
     ------

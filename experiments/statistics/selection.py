@@ -39,7 +39,8 @@ class Selection:
         Whether the procedure has ended; otherwise it needs one more observation of each remaining
         arm.
     best
-        The selected arm, once the procedure has ended.
+        The selected arm, once the procedure has ended; if it was stopped early, the remaining arm
+        with the best mean.
     proven
         Whether the stated error holds; false if the procedure was stopped early.
     """

@@ -111,7 +111,7 @@ def duel(
     agents: Agents = None,
     tasks: Tasks = None,
 ) -> None:
-    """Drive the same trips with several planners: random or, on a grid (.map file), given trips."""
+    """Drive the same trips with several planners: random trips, or given ones on a .map grid."""
     names = planner or duels.all_planners()
     duels.check_planners(names)
     loaded, trips = _given(
@@ -182,7 +182,7 @@ def warehouses_command(
     check: Check = False,
     out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("results/scale"),
 ) -> None:
-    """Measure how the computing time grows with the fleet in warehouses of constant density."""
+    """Measure how the computing time grows with the fleet if the warehouse grows in proportion."""
     from rmfs.experiments.traffic import warehouses
 
     if not any(least <= site.robots <= most for site in warehouses.SITES):

@@ -198,7 +198,10 @@ def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
 
 
 def exponent(frame: pd.DataFrame, column: str = "trips/h") -> float:
-    """Return b of processor time = a * column^b, fitted to logarithms; 1 means linear growth."""
+    """Return the exponent b in processor time = a * column^b, from a linear fit of the logarithms.
+
+    An exponent of 1 means linear growth.
+    """
     work, cpu = np.log(frame[column].to_numpy()), np.log(frame["CPU s per h"].to_numpy())
     return float(np.polyfit(work, cpu, 1)[0])
 

@@ -98,12 +98,12 @@ def table(
     check: bool = False,
     tell: Callable[[str], None] = print,
 ) -> pd.DataFrame:
-    """Measure all sites between two fleet sizes under all rules; return one row each.
+    """Measure the sites in a range of fleet sizes under all rules; return one row per combination.
 
     Parameters
     ----------
     rules
-        Controllers files, or names of shipped ones.
+        Sets of rules: controllers files, or names of shipped ones.
     robots
         Sizes of the smallest and the largest fleet.
     later_s
@@ -171,20 +171,20 @@ def measure(
 
 
 def advance_by_windows(simulation: Simulation, until_s: float) -> int:
-    """Advance a run window by window; return the largest number of robots that stood still in one.
+    """Advance a run by windows; return the most robots that stood still throughout a window.
 
     Parameters
     ----------
     simulation
         A run before the end of its warm-up.
     until_s
-        Simulated time at which to stop, in s; at the latest, the end of the warm-up, at which the
-        statistics are reset.
+        Simulated time at which to stop, in s; not after the end of the warm-up, as the statistics
+        are reset then.
 
     Returns
     -------
-    Number of robots, as `standing_with_work` counts them. If a window shorter than `WINDOW_S`
-    remains at the end, no robots are counted in it.
+    Number of robots, as `standing_with_work` counts them. The last window, of at most `WINDOW_S`,
+    is not included.
     """
     most = 0
     motion = simulation.traffic.motion()
@@ -199,7 +199,7 @@ def advance_by_windows(simulation: Simulation, until_s: float) -> int:
 
 
 def standing_with_work(motion: dict[str, NDArray[Any]]) -> int:
-    """Return the number of robots with a destination that have not moved in a whole window.
+    """Return how many robots had a destination but did not move during a whole window.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def told(error: InternalError, arguments: list[str] | None) -> str:
-    """Write a report of a defect to a file, and return the line for the user that names the file.
+    """Write a report of a defect to a file, and return a message with the file's name.
 
     Parameters
     ----------

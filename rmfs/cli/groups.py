@@ -56,7 +56,7 @@ class LazyGroup(TyperGroup):
         return [*super().list_commands(ctx), *(n for n in ELSEWHERE if n not in self.commands)]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """Return a command, or a stub with its help text if it is not loaded."""
+        """Return a command; if it is not loaded yet, a stub that has only the help text."""
         if cmd_name in ELSEWHERE and cmd_name not in self.commands:
             return TyperGroup(name=cmd_name, help=ELSEWHERE[cmd_name][1])
         return super().get_command(ctx, cmd_name)

@@ -122,8 +122,8 @@ def compare(
 ) -> None:
     """Compare runs, arms or tables: inputs and outputs, paired by seed.
 
-    Exits with code 3 if runs of an experiment are missing, unless `--allow-incomplete` is given; a
-    note says how many.
+    If runs of an experiment are missing, a note says how many, and the exit code is 3 unless
+    `--allow-incomplete` is given.
     """
     from rmfs.experiments.compare import compare as compared
     from rmfs.experiments.compare_print import print_comparisons

@@ -197,7 +197,10 @@ def run(
 def kept_decisions(
     folder: Path, inputs: dict[str, str], seed: int, changes: Sequence[str] = ()
 ) -> DecisionRecorder:
-    """Return the observer that saves every question to an optimiser as a file in a folder."""
+    """Return an observer that writes one file in a folder for each question asked of an optimiser.
+
+    Questions that belong to no known family are left out.
+    """
     from rmfs.solvers.decisions.recording import DecisionRecorder
 
     names = {part: Path(given).stem for part, given in inputs.items()}
@@ -249,10 +252,10 @@ def default_name(
     Parameters
     ----------
     changes
-        The `--set` arguments. If they are unsuitable or too long for a name, unsuitable characters
-        are replaced, the text is cut to `LONGEST` characters, and a hash is added.
+        The `--set` arguments. In the name, unsuitable characters are replaced, and a text longer
+        than `LONGEST` characters is cut; in these cases, a hash of the full text is added.
     pacing
-        The pacing as specified by the user. Unless it is `instant`, it is added to the changes.
+        The pacing as specified by the user; part of the changes unless it is `instant`.
     """
     told = [text.replace(".name=", "=") for text in changes]
     told += [] if pacing == "instant" else [f"pacing={pacing}"]
@@ -266,7 +269,7 @@ def default_name(
 
 
 def proven(done: Run) -> CheckReport:
-    """Show the current step, check the trace of a run, and return the report."""
+    """Check the trace of a run, show that this is being done, and return the report."""
     step("checking the trace")
     return done.check()
 

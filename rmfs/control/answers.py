@@ -64,8 +64,8 @@ MEANINGS = {
     "lines": Meaning("lines", "lines of the order"),
     "units": Meaning(
         "units",
-        "units that the order or station needs, or that the pod can serve; at replenishment "
-        "stations, pods with waiting bundles",
+        "units that the order or station needs, or that the pod can serve; for a replenishment "
+        "station, the number of pods for which bundles wait there",
     ),
     "inbound_units": Meaning(
         "units", "units of the order that are spare on pods at the station or on their way there"

@@ -48,9 +48,9 @@ class Answer:
         Size of the solver's model (nonzeros). With the pacing `work`, the simulated time that the
         answer takes is computed from `work` and `built`.
     scale
-        Reference for the relative gap, in the unit of the objective, such as the cost of the pods
-        called. Default: the absolute value of the objective, which is unsuitable if gains and costs
-        cancel out.
+        The amount of which the relative gap is a share, for example the cost of the pods called;
+        in the unit of the objective. Default (nan): the absolute value of the objective, which is
+        unsuitable if gains and costs cancel out.
     found
         All values that the optimiser found, for users who export questions and answers. The run
         folder contains only `solution`, the part that the controller needs.
@@ -146,7 +146,7 @@ class Ask(Generic[Q]):
 
 
 class Outcome(StrEnum):
-    """How a call ended."""
+    """Whether and how a call of an optimiser ended."""
 
     WAITING = "waiting"
     """No answer has arrived, so far or by the end of the run."""
@@ -180,14 +180,15 @@ class Call:
     controller
         The controller that asked.
     requested_us, completed_us
-        Simulated times, in microseconds, of the question and of the effect of its answer; the
-        latter is -1 while the call is waiting.
+        Simulated times, in microseconds, at which the question was asked and at which its answer
+        took effect; the latter is -1 while the call is waiting.
     state
         Hash of the question and of the state of the world when it was asked.
     failure
         Reason for a failure, in one line.
     applied, stale
-        Numbers of the solution's decisions that were applied, and that had become invalid.
+        Number of decisions of the solution that were applied, and number of those that were not
+        because they had become invalid.
     fallback
         Number of decisions made by the controller's own rule because the call failed or found
         nothing.
@@ -217,7 +218,7 @@ class Call:
 
     @property
     def paced_s(self) -> float:
-        """Simulated time in s from the question to the effect of its answer; nan while waiting."""
+        """Simulated time in s from the question until its answer took effect; nan while waiting."""
         if self.completed_us < 0:
             return float("nan")
         return (self.completed_us - self.requested_us) / 1e6
@@ -235,7 +236,7 @@ class Call:
         name
             Name of this group of parts within the answer.
         parts
-            All parts of the group, the same on each call.
+            All parts of the group, the same each time the method is called for it.
         """
         while (number := self.done.get(name, 0)) < len(parts):
             self.done[name] = number + 1

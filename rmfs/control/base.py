@@ -122,7 +122,8 @@ class Controller(Generic[P]):
     def next_event_s(self) -> float:
         """Return the simulated time, in s, by which the controller must be asked again.
 
-        If it is inf, the controller is asked only after events. The time is read after each call.
+        If the time is inf, the controller is asked only after events. The simulation calls this
+        method each time it has asked the controller.
         """
         return inf
 
@@ -132,9 +133,10 @@ class Controller(Generic[P]):
     def answered(self, call: Call) -> Iterator[Any]:
         """Yield, as `decide` does, those decisions of a solution that are still valid.
 
-        This method is called once for each question, even if there is no solution. It counts
-        decisions that are no longer valid in `call.stale`, and marks decisions that do not come
-        from this answer with `rmfs.control.asks.By`. The base class yields no decisions.
+        This method is called when a question has been answered, even if there is no solution. If
+        `goes_on` is true, it may be called again with the same call after an interruption. It adds
+        the number of decisions that are no longer valid to `call.stale`, and wraps decisions that
+        do not come from this answer in `rmfs.control.asks.By`. The base class yields no decisions.
         """
         return iter(())
 

@@ -45,7 +45,7 @@ def show(
         typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter, as in `rmfs run`."),
     ] = None,
 ) -> None:
-    """Print the rules of a set and their parameters as TOML, defaults included and explained."""
+    """Print the rules of a set as TOML, with all their parameters, explained in comments."""
     overrides = [_below_controllers(text) for text in settings or []]
     read, notes = load_with_notes(controllers, overrides)
     _print_notes(notes)

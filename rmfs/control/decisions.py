@@ -22,7 +22,7 @@ class AssignOrder(NamedTuple):
 
 
 class AssignLines(NamedTuple):
-    """POA: assign those lines of an order whose SKU is in `skus` to a pick station.
+    """POA: assign the lines of an order that are for one of `skus` to a pick station.
 
     The order is split: its other lines stay in the backlog. If a part of the order is already at
     the station, the lines join that part and share its slot.
@@ -53,14 +53,17 @@ class SendBundle(NamedTuple):
 
 
 class PromiseBundle(NamedTuple):
-    """RPS: choose the pod of a bundle, and reserve room in it; `ReleasePod` releases the choice."""
+    """RPS: choose the pod of a bundle, and reserve room in it; `ReleasePod` releases the bundle."""
 
     bundle: Bundle
     pod: int
 
 
 class ReleasePod(NamedTuple):
-    """RPS: release the bundles promised to a pod; ROA and TA may act on them from then on."""
+    """RPS: release the bundles promised to a pod.
+
+    A robot can be sent for a bundle once it has been released and ROA has chosen its station.
+    """
 
     pod: int
 
@@ -90,9 +93,10 @@ class BringForBundles(NamedTuple):
 
 
 class Visit(NamedTuple):
-    """TA: let a robot bring an available pod, or the pod it carries, to a station of another kind.
+    """TA: let a robot bring an available pod, or the pod it carries, to a station.
 
-    `what` is the kind of task, as defined by the kind of station.
+    The station is neither a pick nor a replenishment station. `what` is the kind of task, as
+    defined by the kind of station.
     """
 
     robot: Robot
@@ -206,7 +210,7 @@ class Charge(NamedTuple):
 
 
 class Unplug(NamedTuple):
-    """CA: make a robot leave its plug-in place, after which the robot needs a task."""
+    """CA: make a charging robot leave its charger; it then needs a task."""
 
     robot: Robot
 

@@ -142,7 +142,10 @@ class DummySA(StationActivation[NoParameters]):
 
 
 class DummyCA(ChargeAssignment[NoParameters]):
-    """Leaves charging to another controller; the simulation still sends robots with low charge."""
+    """Leaves charging to another controller.
+
+    The simulation still sends a robot to charge if its charge is low.
+    """
 
     is_dummy: ClassVar[bool] = True
     triggers = NEVER

@@ -135,7 +135,7 @@ class Feature(NamedTuple):
 
 
 def features_of(kinds: Iterable[str]) -> tuple[Feature, ...]:
-    """Return the features of some kinds of question, each once, in order of first appearance."""
+    """Return the features of some kinds of question, without repetition, in order of appearance."""
     names = dict.fromkeys(name for kind in kinds for name in COLUMNS[kind])
     told = {**{name: tuple(one) for name, one in MEANINGS.items()}, **OWN_MEANINGS}
     return tuple(Feature(name, told[name][0], SCALES[name], told[name][1]) for name in names)

@@ -32,7 +32,7 @@ class Comparison:
     certainty
         A decision replaces the first only if its mean advantage exceeds this many standard errors.
     state
-        Numbers that identify the state of the run, for the hash of the question.
+        Numbers that identify the state of the run; they enter the hash of the comparison.
     """
 
     trials: Trials
@@ -43,7 +43,7 @@ class Comparison:
     state: tuple[float, ...] = field(default=())
 
     def digested(self) -> tuple[object, ...]:
-        """Return the values from which the hash of the question is computed."""
+        """Return the values from which the hash of the comparison is computed."""
         return self.count, self.samples, self.instants, self.certainty, self.state
 
 
@@ -52,10 +52,11 @@ def solve(question: Comparison) -> Answer:
 
     First, all decisions are tried in one future. Each further round doubles the number of futures
     tried so far. After each round, the base rule's decision and the better half of the others are
-    kept; trials end early if none of these others has a positive mean advantage. The base rule's
-    decision is chosen unless another has a mean advantage of more than `certainty` standard errors
-    over it in the same futures. Source: Karnin, Koren and Somekh (2013), "Almost optimal
-    exploration in multi-armed bandits".
+    kept; trials end early if none of the latter has, in the same futures, a greater mean value than
+    the base rule's decision. In the end, the best of the others is chosen if its mean advantage
+    over the base rule's decision exceeds `certainty` standard errors, and otherwise the base rule's
+    decision. Source: Karnin, Koren and Somekh (2013), "Almost optimal exploration in multi-armed
+    bandits".
 
     Returns
     -------

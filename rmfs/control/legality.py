@@ -28,7 +28,7 @@ def why_not(given: Any, question: Question, view: View) -> str:
     Parameters
     ----------
     given
-        A decision, or a number or `Move` as an answer to a question of TA.
+        A decision if the question is of kind `turn`; otherwise a number or a `Move`.
     """
     if question.kind != "turn":
         return _ANSWERS[question.kind](given, question, view)

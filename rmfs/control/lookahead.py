@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Goal(Parameters):
-    """The value of a trial: a weighted sum of amounts within its horizon."""
+    """Weights that define the value of a trial from what happens within its horizon."""
 
     units: float = 1.0
     """Value of a unit picked at the start of the horizon; it falls linearly to 0 at the end."""

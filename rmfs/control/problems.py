@@ -33,7 +33,7 @@ class Problem(StrEnum):
     def protocol(self) -> str:
         """The base class of all controllers of the problem, as `module:Class`.
 
-        The class defines the triggers, and the methods that ask a controller for decisions.
+        It defines the triggers, and the methods by which a controller is asked for decisions.
         """
         return _DECLARED[self].protocol
 

@@ -146,22 +146,22 @@ _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
 
 
 def names(problem: Problem) -> list[str]:
-    """Return the names of all rules for a problem, in `rmfs` and other installed packages."""
+    """Return the names of all controllers in `rmfs` and other installed packages for a problem."""
     return [*_BUILT_IN[problem], *solver_backed(problem), *sorted(_installed(problem))]
 
 
 def built_in(problem: Problem) -> list[str]:
-    """Return the names of the rules for a problem in `rmfs.control`."""
+    """Return the names of the rules in `rmfs.control` for a problem."""
     return list(_BUILT_IN[problem])
 
 
 def solver_backed(problem: Problem) -> list[str]:
-    """Return the names of the controllers for a problem in `rmfs.solvers`, which ask optimisers."""
+    """Return the names of the controllers for a problem that ask optimisers (in `rmfs.solvers`)."""
     return list(_SOLVER_BACKED.get(problem, ()))
 
 
 def find(problem: Problem, name: str) -> type[Controller[Any]]:
-    """Find the class of a rule.
+    """Find the class of a controller.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     Raises
     ------
     InputError
-        If there is no such rule, or the rule cannot be imported, lacks a method or solves another
+        If there is no such controller, or it cannot be imported, lacks a method or solves another
         problem.
     """
     shipped = _BUILT_IN[problem] | _SOLVER_BACKED.get(problem, {})

@@ -53,7 +53,7 @@ class RolloutParameters(Parameters):
 class TriesOut:
     """Shared implementation of rollout rules.
 
-    In the list of base classes of a rule, it precedes the class of the problem.
+    A rollout rule inherits from this class first, then from the base class of its problem.
 
     Attributes
     ----------

@@ -32,7 +32,7 @@ class ControllerSettings:
     Attributes
     ----------
     choices
-        The choice for each problem.
+        The rule chosen for each problem, with its parameters.
     """
 
     name: str

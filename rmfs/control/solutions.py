@@ -21,8 +21,8 @@ def to_text(solution: Mapping[str, Plain]) -> str:
     Raises
     ------
     TypeError
-        If the solution contains anything but values of JSON, and NumPy arrays and scalars of
-        numbers, truth values or strings.
+        If the solution contains anything but JSON values and NumPy arrays or scalars; the latter
+        two may consist of numbers, truth values or strings.
     """
     return json.dumps({str(name): value for name, value in solution.items()}, default=_plain)
 

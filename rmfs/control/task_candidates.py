@@ -26,10 +26,10 @@ _KIND_OF: dict[type, int] = {WorkFor: WORK, Store: STORE, MovePod: MOVE, Rest: R
 def tasks(
     view: View, refused: Sequence[Any] = (), robots: Sequence[Robot] | None = None
 ) -> Candidates:
-    """List the possible tasks of each robot that needs a task or rests.
+    """List the possible tasks of robots that need a task or are at rest.
 
-    The object of a decision is created only when its row is accessed, since most rows are only
-    compared.
+    Each row of the candidates is a task. The object of its decision is created only when the row is
+    accessed, since most rows are only compared.
 
     Parameters
     ----------
@@ -76,8 +76,8 @@ def has_tasks(view: View) -> bool:
 def open_work(view: View, station: int) -> int:
     """Return the amount of a station's open work, that is, work for which no pod is under way.
 
-    For a pick station, it is the number of units that its orders need and that are not bound to a
-    pod; for a replenishment station, the number of pods for which bundles wait.
+    For a pick station, it is the number of units that its open orders need and that are not bound
+    to a pod; for a replenishment station, the number of pods for which bundles wait.
     """
     target = view.stations[station]
     return target.requests.units if isinstance(target, PickStation) else len(target.waiting)

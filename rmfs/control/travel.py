@@ -44,7 +44,7 @@ class TravelTimes(Protocol):
 
 
 class TravelTables:
-    """Cached travel times and distances, valid for every copy of a run.
+    """Cached travel times and distances, shared by a run and the copies of it made for trials.
 
     Attributes
     ----------

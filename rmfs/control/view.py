@@ -58,7 +58,7 @@ class View:
         Number of assigned bundles that are not yet part of a task, per replenishment station and
         pod, shape (S, P).
     recovery_stations
-        Stations where robots get energy: plug-in places and battery swap stations.
+        Stations where robots get energy: chargers and battery swap stations.
     robots
         All robots, in order of index.
     asking, resting
@@ -147,7 +147,7 @@ class View:
 
     @cached_property
     def chargers(self) -> list[RecoveryStation]:
-        """The plug-in places among the recovery stations."""
+        """The chargers among the recovery stations."""
         plans = self.layout.stations
         return [s for s in self.recovery_stations if isinstance(plans[s.index].kind, Charger)]
 
@@ -162,7 +162,7 @@ class View:
         return self._draw_past_orders()
 
     def pod_waypoint(self, pod: int) -> int:
-        """Return the waypoint of a stored pod, or where the robot that carries it stops next."""
+        """Return where a pod is stored; if it is carried, where its robot stands or next stops."""
         place = self.storage.place_of[pod]
         return place if place >= 0 else self.travel.robot_waypoint(self.storage.claimed_by[pod])
 
@@ -179,7 +179,7 @@ class View:
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:
-        """Return the waypoint of the pod that a robot is to fetch; otherwise `robot.waypoint`."""
+        """Return the waypoint of the pod that a robot is to fetch; if none, `robot.waypoint`."""
         task = robot.task
         if task is None or task.pod < 0 or robot.pod >= 0:
             return robot.waypoint

@@ -213,7 +213,7 @@ def emulate(
     ] = 0.04,
     memory: Annotated[
         Path | None,
-        typer.Option(help="Folder in which robots store their orders.", show_default=False),
+        typer.Option(help="Folder in which robots store their route orders.", show_default=False),
     ] = None,
     duration_s: Annotated[
         float | None,

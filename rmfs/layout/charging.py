@@ -1,4 +1,4 @@
-"""Kinds of station where robots get energy: plug-in places and battery swap stations."""
+"""Kinds of station where robots get energy: chargers and battery swap stations."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from rmfs.layout.kinds import StationKind
 
 
 class ChargerParameters(Model):
-    """Parameters of plug-in places in a layout file."""
+    """Parameters of chargers in a layout file."""
 
     power_w: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 1000.0
-    """Charging power in W at each place; the robot's electronics are supplied in addition."""
+    """Charging power in W of each charger; the robot's electronics are supplied in addition."""
 
 
 class SwapParameters(Model):
@@ -32,14 +32,14 @@ class SwapParameters(Model):
 
 
 class RecoveryKind(StationKind):
-    """Kind of station where robots without pods get energy, as charge assignment (CA) decides."""
+    """Kind of station to which charge assignment (CA) sends robots without pods to get energy."""
 
     task = "rmfs.world.charging:ChargeTask"
     state = "rmfs.world.charging:RecoveryStation"
 
     @property
     def head_w(self) -> float:
-        """Charging power in W for the robot at the station; 0 if no battery is charged there."""
+        """Power in W that charges the battery of the robot at the station; 0 if it is exchanged."""
         return 0.0
 
     @property
@@ -49,7 +49,7 @@ class RecoveryKind(StationKind):
 
 
 class Charger(RecoveryKind):
-    """Plug-in places: a robot stays until its battery reaches its target level."""
+    """A charger: a robot stays until its battery has reached the target level."""
 
     name = "charger"
     letter = "C"
@@ -60,17 +60,17 @@ class Charger(RecoveryKind):
 
     @property
     def head_w(self) -> float:
-        """Charging power of a place, in W."""
+        """Charging power of the charger, in W."""
         return float(self.parameters.power_w)
 
     @property
     def long_run_w(self) -> float:
-        """Charging power of a place that is always occupied, in W."""
+        """Charging power of the charger, in W, as if it were always occupied."""
         return self.head_w
 
 
 class Swap(RecoveryKind):
-    """Battery swap: the robot takes the fullest battery in stock and leaves its own to charge."""
+    """A swap station: a robot gets the fullest battery in stock; its own is charged there."""
 
     name = "swap"
     letter = "B"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def pick_stations(ranked: Ranked, given: Given) -> tuple[PickStation, ...]:
-    """Return a pick station for each queue and activation rank."""
+    """Return the pick stations, one for each pair of a queue and its activation rank."""
     return tuple(
         PickStation(
             waypoint=queue[0],
@@ -34,7 +34,7 @@ def pick_stations(ranked: Ranked, given: Given) -> tuple[PickStation, ...]:
 
 
 def replenishment_stations(ranked: Ranked, given: Given) -> tuple[ReplenishmentStation, ...]:
-    """Return a replenishment station for each queue and activation rank."""
+    """Return the replenishment stations, one for each pair of a queue and its activation rank."""
     return tuple(
         ReplenishmentStation(
             waypoint=queue[0],

@@ -194,12 +194,14 @@ def station_kind(
     reference
         Reference to its class, as in the layout file.
     folder
-        Folder where a file is looked for first. Default: the working directory.
+        Folder where a file named in `reference` is looked for first. Default: the working
+        directory.
 
     Raises
     ------
     InputError
-        If there is no such kind, its class has another name, or a parameter is wrong.
+        If there is no such kind, `name` is reserved or differs from the attribute `name` of the
+        class, the class has no letter or colour, or a parameter is wrong.
     """
     key = f"other_stations.{name}"
     try:

@@ -47,9 +47,10 @@ def load_with_notes(
         storage locations of `NAME.map.toml` beside it, or without stations for traffic
         experiments).
     overrides
-        (path, value) pairs such as `(["robots"], 16)`, applied to the parameters before they are
-        validated. Explicit layouts accept only the keys of `ExplicitOverrides`, of which
-        those in `FACTORS` are also valid for generated and drawn layouts.
+        (path, value) pairs such as `(["robots"], 16)`. Generated and drawn layouts accept their
+        parameters, which are changed before they are validated, and the keys in `FACTORS`, which
+        are applied to the finished layout. All other layouts accept the keys of
+        `ExplicitOverrides`.
 
     Returns
     -------
@@ -99,7 +100,7 @@ def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layou
 
 
 def split_factors(overrides: Sequence[Override]) -> tuple[list[Override], list[Override]]:
-    """Return the overrides of layout parameters, and those of `FACTORS`, to be applied later."""
+    """Return the overrides of layout parameters, and those of `FACTORS`, which are applied last."""
     is_factor = [path[0] in FACTORS for path, _ in overrides]
     pairs = list(zip(overrides, is_factor, strict=True))
     return [one for one, late in pairs if not late], [one for one, late in pairs if late]

@@ -45,7 +45,7 @@ def read_map(path: Path, robots: list[int] | None = None) -> Layout:
     Raises
     ------
     InputError
-        If the file is not a grid map, or robots do not stand on different free cells.
+        If the file is not a grid map, or a cell in `robots` is not free or occurs twice.
     """
     free = _free(path)
     number = cell_waypoints(free)
@@ -120,7 +120,7 @@ def waypoint_at(number: NDArray[np.int64], cell: int, source: str) -> int:
 
 
 def read_rows(path: Path) -> list[str]:
-    """Return the rows of a map as texts with one sign for each cell, the top row first.
+    """Return the rows of a map as strings with one character per cell, the top row first.
 
     Raises
     ------

@@ -58,9 +58,8 @@ class GraphMeasures:
         and maximum over the storage locations that have such a way. Ways may lead through any
         waypoint; elevator rides count as 0 m. None if there is no such storage location.
     bottlenecks
-        Number of waypoints, not in queues, each of which would alone divide the floor into
-        unconnected parts if it were closed: the articulation points of the undirected graph
-        without queues.
+        Number of waypoints outside queue zones whose closure alone would cut the floor into
+        unconnected parts: the articulation points of the undirected graph without queue zones.
     """
 
     to_station_mean_m: float | None

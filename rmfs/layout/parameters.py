@@ -18,12 +18,16 @@ from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Spac
 
 
 class PerSide(Strict):
-    """Number of stations (or elevators) on each side of a tier."""
+    """Number on each side of a tier."""
 
     west: Amount = Field(0, description="on the side with the smallest x")
     east: Amount = Field(0, description="on the side with the largest x")
-    south: Amount = Field(0, description="on the side with the largest y (top of a picture)")
-    north: Amount = Field(0, description="on the side with the smallest y (bottom of a picture)")
+    south: Amount = Field(
+        0, description="on the side with the largest y: south is at the top of a picture"
+    )
+    north: Amount = Field(
+        0, description="on the side with the smallest y, at the bottom of a picture"
+    )
 
     @property
     def total(self) -> int:

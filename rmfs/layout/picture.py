@@ -70,7 +70,7 @@ def draw(
     pods, robots
         Whether to show their initial positions.
     legend
-        Whether to explain colours and lines below the figure.
+        Whether to add a legend of the colours and lines below the figure.
     """
     points = _points(layout)
     pitch_m = _pitch(layout)

@@ -35,11 +35,11 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     """An environment in which an episode is a run and a step is a decision of the chosen problems.
 
     Actions 0 to k - 1 choose one of the k best candidates (possible answers), in order of their
-    ranking. Action k declines: in a turn, which may consist of several decisions (as in TA), it
-    ends the turn; otherwise, it answers that there is nothing to choose. With `rule`, action k + 1
-    follows the installed rule of the problem. Questions with only one possible action are skipped.
-    An impossible action sets `info["invalid"]`. It counts as declining or, where declining is
-    impossible, as action 0.
+    ranking. Action k declines, that is, chooses none of them. A question of POA, ROA, RPS, SA, MM,
+    CA or TA (a turn) can be answered by several decisions, one per step, until the agent declines.
+    With `rule`, action k + 1 gives the answer of the problem's controller (the installed rule).
+    Questions with only one possible action are skipped. An impossible action sets
+    `info["invalid"]`. It counts as declining or, where declining is impossible, as action 0.
 
     An observation is a dictionary with the arrays `global`, shape (G,), `candidates`, shape (k, F),
     and `action_mask`; if `observation` is `flat`, it is one vector, the first two concatenated. The
@@ -59,15 +59,15 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     candidates
         Number k of candidates offered in each step.
     rankings
-        Weights for ranking the candidates, by kind of question and column. They replace those of
-        `rmfs.control.features.RANKINGS`.
+        Weights of features for ranking the candidates, by kind of question. For kinds not given,
+        those of `rmfs.control.features.RANKINGS` apply.
     reward
         A name, weights by name, or a user-defined class (`rmfs.learning.rewards`).
     observation
         `dict` or `flat`.
     rule
         Whether following the installed rule is one of the actions. A rule assumes that all its
-        decisions are carried out. Therefore follow it in every step, or regard it as mere advice.
+        decisions are carried out; if some are not, its later answers may not suit the situation.
     footprint
         Whether to measure runs, so that `info` contains the footprint at the end. Without
         measurement, steps are about 5 % faster.

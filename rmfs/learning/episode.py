@@ -41,7 +41,8 @@ class Episode(Simulation):
 class Episodes:
     """Creates episodes of one warehouse; files are read and the layout is checked only once.
 
-    If a seed is used repeatedly, its episodes are copies of one run before its first event.
+    From the second use of a seed on, its episodes are copies of a run that was kept in the state
+    before its first event.
 
     Parameters
     ----------

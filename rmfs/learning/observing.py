@@ -88,8 +88,8 @@ class Observing:
     candidates
         Number k of candidates offered.
     rankings
-        Weights of columns by kind of question. They replace those of
-        `rmfs.control.features.RANKINGS`.
+        Weights of features for ranking the candidates, by kind of question. For kinds not given,
+        those of `rmfs.control.features.RANKINGS` apply.
 
     Attributes
     ----------

@@ -43,7 +43,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     workers
         Number of processes. Default: one per core, at most N.
     given
-        All other arguments of `DecisionEnv`.
+        Arguments of the environments, as for `DecisionEnv`.
 
     Raises
     ------

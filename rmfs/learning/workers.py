@@ -115,7 +115,7 @@ class Stand:
         return {}
 
     def step(self) -> dict[int, Any]:
-        """Carry out the actions in shared memory; start the next run where a run had ended.
+        """Carry out the actions in shared memory; where a run has ended, start the next instead.
 
         Returns
         -------
@@ -172,7 +172,7 @@ class Stand:
 
 
 def work(given: Mapping[str, Any], board: Board, places: range, pipe: Connection) -> None:
-    """Process commands from a pipe until it is closed: the main function of a process."""
+    """Carry out commands from a pipe until it is closed: the main function of a process."""
     try:
         stand = Stand(given, board, places)
         pipe.send(("made", None))

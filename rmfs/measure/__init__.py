@@ -51,8 +51,8 @@ def series(run: Measured) -> pd.DataFrame:
 def decisions(run: Measured) -> pd.DataFrame:
     """Return the table `decisions` of a run.
 
-    It has one row per call in which a controller made decisions itself, and one per question to an
-    optimiser, in the measured time.
+    It has one row per call in which a controller made decisions without an optimiser, and one row
+    per question to an optimiser, both in the measured time.
     """
     from rmfs.measure import tables
 

@@ -41,7 +41,7 @@ def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration
 
 
 def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
-    """Return a layout with the shortest handling times that its pickers can achieve.
+    """Return the layout with the shortest handling times that the pickers in `staff` can achieve.
 
     Returns
     -------

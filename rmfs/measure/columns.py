@@ -32,8 +32,8 @@ class Column:
     Attributes
     ----------
     name
-        Name of the column; it ends with the unit if there is one: `_s`, `_m`, `_h` (per hour),
-        `_share` (0 to 1).
+        Name of the column; a suffix states the unit of a time, length, rate or share: `_s`, `_m`,
+        `_h` (per hour), `_share` (0 to 1).
     dtype
         The pandas type of the column, one of `DTYPES`.
     unit
@@ -43,7 +43,7 @@ class Column:
     measured
         Whether its values depend on the machine, so that they are not reproducible.
     better
-        Which direction is better for a warehouse: more, less, or neither if it is descriptive.
+        Whether more or less is better for a warehouse; neither if the column is descriptive.
     """
 
     name: str

@@ -42,7 +42,7 @@ _PLACES = {name: place for place, name in enumerate(PROMISED)}
 
 
 def footprint_columns(measures: Iterable[Measure | type[Measure]]) -> tuple[Column, ...]:
-    """Return the columns of the footprint computed by these measures, in order."""
+    """Return the columns that these measures compute, in the order of the footprint."""
     declared = (column for measure in measures for column in measure.columns)
     return tuple(sorted(declared, key=lambda column: _PLACES.get(column.name, len(_PLACES))))
 
@@ -76,12 +76,12 @@ def learn(columns: Iterable[Column]) -> None:
 
 
 def footprint_column(name: str) -> Column | None:
-    """Return a column of the footprint, or of a user's measure known to this process."""
+    """Return a column of the footprint or a registered one (see `learn`); None if unknown."""
     return next((one for one in FOOTPRINT if one.name == name), _LEARNT.get(name))
 
 
 def learnt() -> list[Column]:
-    """Return the columns of users' measures known to this process."""
+    """Return the columns of users' measures that were registered (see `learn`)."""
     return list(_LEARNT.values())
 
 

@@ -20,9 +20,9 @@ WH = 3600.0
 class EnergyLog:
     """Energy drawn by robots, if the scenario models it.
 
-    The energy that a robot draws from the end of one visit in which units are picked to the end of
-    the next such visit is divided equally among the units of the latter. This energy includes
-    driving, waiting, storing the previous pod, and the way to a charger.
+    When a visit in which units were picked ends, the energy that the robot has drawn since the end
+    of its previous such visit is divided equally among these units. This energy includes driving,
+    waiting, storing the previous pod, and the way to a charger.
 
     Attributes
     ----------

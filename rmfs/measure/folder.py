@@ -133,7 +133,7 @@ def write_csv(run: RunFolder) -> list[Path]:
 
 
 def plain(value: Any) -> Any:
-    """Return a value for JSON, with strings in place of infinite numbers and nan."""
+    """Return `value` with strings in place of infinite numbers and nan, for JSON."""
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

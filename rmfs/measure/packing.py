@@ -21,7 +21,8 @@ class PackingLog:
     given
         The scenario's packing parameters; None without packing.
     parcels
-        Packed orders and, at the end of the run, those not yet packed; rows as in `parcel_row`.
+        Orders that are packed or, at the end of the run, of which at least one tote has left its
+        station; rows as in `parcel_row`.
     totes
         Totes of these orders; `consolidated_s` is that of the parcel.
     held

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class PickerLog:
-    """Units and presence of pickers, if the scenario has them; empty logs otherwise.
+    """Presence of pickers, and units that they handled; empty logs in scenarios without pickers.
 
     Attributes
     ----------

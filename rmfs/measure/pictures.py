@@ -54,8 +54,8 @@ def picture(run: Results, what: str) -> Figure:
     Parameters
     ----------
     what
-        A name in `PICTURES` or `ALIASES`. For the heat map, a count by task or load can be
-        selected: `heat:loaded_visits`, `heat:pick_waiting_s` (columns of the table `heat`).
+        A name in `PICTURES` or `ALIASES`. For the heat map, a column of the table `heat` can be
+        selected, for example `heat:loaded_visits` or `heat:pick_waiting_s`.
 
     Raises
     ------

@@ -232,7 +232,7 @@ def _git(folder: Path, *arguments: str) -> str | None:
 
 
 def machine() -> dict[str, Any]:
-    """Return the properties of this machine on which measured columns depend."""
+    """Return the properties of this machine on which wall times and memory depend."""
     return {
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.release()}",

@@ -80,8 +80,8 @@ class Recorder(Observer):
     solutions
         Their solutions as text, by number of the question.
     by_rule
-        Number of decisions since the warm-up that controllers with optimisers made by their own
-        rule, by decision problem.
+        For each decision problem, number of decisions since the warm-up that controllers with
+        optimisers made by their own rule.
     switches
         Stations switched on or off.
     early_trips
@@ -90,15 +90,15 @@ class Recorder(Observer):
         Per minute: time (s), and the fleet's totals of distance and times since the end of the
         warm-up.
     plans
-        Searches for plans that took simulated time.
+        Searches for plans of trips; empty if plans take no simulated time.
     energy
         Energy drawn by robots.
     packing
-        Orders after the pick stations.
+        Totes that have left the pick stations, and the orders (parcels) packed from them.
     pickers
         Pickers at the pick stations.
     charge_kinds
-        Kinds of tasks in which robots charge, by their numbers in `tasks`.
+        Values of `kind` in `tasks` for tasks in which robots charge.
     """
 
     def __init__(self) -> None:
@@ -190,7 +190,7 @@ class Recorder(Observer):
         self._before = self._order_counts()
 
     def run_ended(self, time_s: float) -> None:
-        """Store the totals counted by traffic, and close open intervals."""
+        """Store the totals counted by `traffic`, and record what is still in progress."""
         self.end_s = time_s
         if not self.samples or self.samples[-1][0] < time_s:
             self.sampled(time_s)
@@ -326,7 +326,7 @@ class Recorder(Observer):
         self.questions.append(call)
 
     def optimiser_answered(self, call: Call) -> None:
-        """Record the solution; `call` counts how it is used."""
+        """Record the solution; how many of its decisions are applied is counted in `call`."""
         if call.solution is not None:
             self.solutions[call.number] = to_text(call.solution)
 

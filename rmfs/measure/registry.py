@@ -80,7 +80,7 @@ def find_all(given: Iterable[str | type[Measure]]) -> list[type[Measure]]:
 def described(measures: Iterable[type[Measure]]) -> list[dict[str, Any]]:
     """Return descriptions of users' measures: name, reference, hash of the source, and columns.
 
-    The reference is None for a measure defined in a notebook, which cannot be found again.
+    A measure defined in a notebook cannot be found again, so its reference is None.
     """
     told = []
     for measure in measures:

@@ -13,10 +13,10 @@ FRAME_HEIGHT = 640
 
 @dataclass(frozen=True, slots=True)
 class Replay:
-    """A page with the replay of a run, which displays itself in a notebook.
+    """A page with the replay of a run; a notebook displays it in a frame.
 
-    The frame contains the whole page, not a link to a file, so it is kept when the notebook is sent
-    to others, and needs no server.
+    The frame contains the whole page, not a link to a file. The replay therefore needs no server
+    and remains in the notebook when the notebook is sent to others.
 
     Attributes
     ----------
@@ -45,6 +45,6 @@ class Replay:
 
 
 def in_notebook() -> bool:
-    """Return whether this runs in a notebook, which displays the value of a cell."""
+    """Return whether this code runs in a notebook, which displays the value of a cell."""
     shell = sys.modules.get("IPython")
     return shell is not None and type(shell.get_ipython()).__name__ == "ZMQInteractiveShell"

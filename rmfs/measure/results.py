@@ -35,7 +35,7 @@ class Results(ABC):
 
     @abstractmethod
     def table(self, name: str) -> pd.DataFrame:
-        """Return a table of the data dictionary by name: `orders`, `stations`, `series`, ...
+        """Return a table by its name in the data dictionary: `orders`, `stations`, `series`, ...
 
         Raises
         ------
@@ -55,7 +55,7 @@ class Results(ABC):
 
     @abstractmethod
     def save(self, path: str | Path, *, force: bool = False) -> RunFolder:
-        """Write a run folder, with the trace if there is one, and return it.
+        """Write a run folder, with the trace if there is one, and return the folder.
 
         Parameters
         ----------
@@ -65,7 +65,7 @@ class Results(ABC):
         Raises
         ------
         InputError
-            If the folder exists already or cannot be written.
+            If the folder exists already and `force` is False, or if it cannot be written.
         """
 
     def summary(self) -> Summary:
@@ -102,7 +102,7 @@ class Results(ABC):
         path
             The HTML file to write. Default: a temporary file.
         open_browser
-            Whether to open the page in a browser. Default: unless in a notebook.
+            Whether to open the page in a browser. Default: True, but False in a notebook.
         height
             Height of the frame in a notebook, in pixels.
 

@@ -72,7 +72,7 @@ def require_columns(path: Path, table: Any, names: Sequence[str]) -> None:
 
 
 def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int) -> None:
-    """Make sure that motion is possible in a layout.
+    """Make sure that the motion in a trace is possible in the layout.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int
 def require_events(
     path: Path, events: pd.DataFrame, layout: Layout, skus: int, end_us: int
 ) -> None:
-    """Make sure that events are possible in a layout.
+    """Make sure that the events in a trace are possible in the layout.
 
     Parameters and errors are those of `require_motion`, but no event may be later than `end_us`.
 

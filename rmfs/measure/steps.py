@@ -36,7 +36,7 @@ class Steps:
 
     @classmethod
     def between(cls, begin_s: ArrayLike, end_s: ArrayLike) -> Steps:
-        """Return how many intervals are open over time; one whose end is nan stays open."""
+        """Return the number of open intervals over time; an end that is nan is never reached."""
         begins, ends = np.asarray(begin_s, np.float64), np.asarray(end_s, np.float64)
         sign = np.concatenate([np.ones(len(begins)), -np.ones(len(ends))])
         return cls(np.concatenate([begins, ends]), sign)
@@ -69,7 +69,7 @@ class Steps:
 
 
 def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
-    """Return how much of some intervals lies before each time, in s, in the shape of `at_s`.
+    """Return for each time in `at_s` how many seconds before it lie within the intervals.
 
     The intervals must be disjoint and sorted by start.
     """

@@ -17,7 +17,8 @@ def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
     """Return the number of initial observations to drop, by the marginal standard error rule.
 
     Of the batch means Z_1 ... Z_n the first d are dropped, where d <= n / 2 minimises
-    sum over j > d of (Z_j - mean)² / (n - d)² (White 1997; MSER-5 with batches of five).
+    sum over j > d of (Z_j - mean)² / (n - d)², with the mean of these Z_j (White 1997; MSER-5 with
+    batches of five).
 
     Parameters
     ----------
@@ -27,8 +28,8 @@ def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
     Returns
     -------
     int | None
-        A multiple of `batch`. None if there are fewer than four batches, or if the minimum is at
-        the end of the range, so that the series is too short.
+        A multiple of `batch`. None if the series is too short: there are fewer than four batches,
+        or the minimum is at the largest permitted d.
     """
     observed = np.asarray(values, np.float64)
     number = len(observed) // batch
@@ -74,7 +75,7 @@ def settled(smooth: ArrayLike, tolerance: float = 0.05) -> int | None:
     Returns
     -------
     int | None
-        The index; None if the deviation exceeds the tolerance again in the second half.
+        The index; None if the deviation exceeds the tolerance anywhere in the second half.
     """
     values = np.asarray(smooth, np.float64)
     half = len(values) // 2

@@ -85,7 +85,7 @@ def import_files(
     target
         The folder to create; an empty one, or one from an earlier import, is replaced.
     tell
-        Function called after each file.
+        Function called after each file, with the result for it.
 
     Returns
     -------

@@ -425,7 +425,7 @@ FILES: tuple[Mapped, ...] = (
 
 
 def markdown() -> str:
-    """Return the section on measures for the page for users of RAWSim-O."""
+    """Return the Markdown of the section on measures in the guide for users of RAWSim-O."""
     lines = [
         "## Measures",
         "",

@@ -120,7 +120,7 @@ class Openings:
         return self.open_from_us(time_us) == time_us
 
     def open_from_us(self, time_us: int) -> int:
-        """Return the first time in us outside all down periods that is not before a given time."""
+        """Return the first time from `time_us` on that is outside all down periods, in us."""
         while self._borders:
             phase_us = self._cycle.phase_us(time_us)
             passed = bisect_right(self._borders, phase_us)

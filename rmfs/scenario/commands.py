@@ -61,7 +61,7 @@ def show(scenario: Name, settings: Settings = None) -> None:
 
 @app.command()
 def check(scenario: Name, settings: Settings = None) -> None:
-    """Check a scenario and its files; report what is wrong or, if nothing is, what it contains."""
+    """Check a scenario and its files; report an error or else what the scenario contains."""
     config = _loaded(scenario, settings)
     skus = sku_set(config.skus)
     anywhere = Site(1, 1, capacity=math.inf, largest_pod=math.inf)

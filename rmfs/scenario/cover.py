@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 def bundles_to_cover(scenario: Scenario, skus: SkuSet) -> list[int]:
     """Return the SKUs of the bundles to store first, so that stock can serve a file of orders.
 
-    There is one entry per bundle. The bundles of each SKU contain at least `stock.order_cover`
-    times the units ordered in the scenario's file up to the end of the run. The largest bundles
-    come first, because small ones fit into the remaining space. The list is empty if
+    There is one entry per bundle. The bundles of a SKU contain at least `stock.order_cover` times
+    the units of this SKU ordered in the scenario's file up to the end of the run. The largest
+    bundles come first, because small ones fit into the remaining space. The list is empty if
     `stock.order_cover` is 0.
 
     Raises

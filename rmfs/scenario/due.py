@@ -36,7 +36,7 @@ class PriorityDue(Block):
 
 
 class OrderClass(Block):
-    """A class of orders with the same priority."""
+    """A class of orders with the same offset and weight."""
 
     name: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9 ._-]{0,39}$")] = Field(
         description="name in tables and files of orders; up to 40 letters, digits, spaces, . _ -"

@@ -35,10 +35,10 @@ class OrderContent(NamedTuple):
     due_offset_s
         Time from arrival to due time, in s.
     redraws
-        Number of draws rejected because the SKU had too few units that no earlier order needs; at
-        most `DRAWS_PER_LINE` for each line.
+        Number of draws rejected because earlier orders left too few units of the SKU; at most
+        `DRAWS_PER_LINE` for each line.
     priority
-        Index of its class; -1 if there are no classes (`orders.due.mode = "classes"`).
+        Index of its class; -1 unless `orders.due.mode = "classes"`.
     """
 
     skus: tuple[int, ...]
@@ -52,10 +52,11 @@ class OrderSource:
     """Draws orders of SKUs that are in stock.
 
     Order k is drawn from substream (seed, k), so it depends only on the seed, its ordinal and the
-    stock: two runs with the same seed get the same orders until their stock differs. If the SKU of
-    a line lacks uncommitted stock, the next draw of the substream is used, which is equivalent to
-    drawing by popularity among the SKUs that qualify. The first draws of all lines precede all
-    redraws, so that a shortage in one line does not affect the others.
+    stock: two runs with the same seed get the same orders until their stock differs. If
+    earlier orders leave too few units of the SKU drawn for a line, the SKU is redrawn with the next
+    number of the substream; this is equivalent to a draw among the SKUs with enough units left.
+    The first draws of all lines precede all redraws, so that a shortage in one line does not affect
+    the others.
 
     Parameters
     ----------
@@ -68,8 +69,8 @@ class OrderSource:
     source
         Name of the scenario, for messages.
     path
-        Numbers that select the substreams (see `Substreams`), for orders that are numbered
-        separately, such as those of batches.
+        Numbers that select a branch of the random stream (see `Substreams`); orders that are
+        numbered separately, such as those of batches, have a branch of their own.
 
     Raises
     ------
@@ -103,8 +104,8 @@ class OrderSource:
         Parameters
         ----------
         ordinal
-            Number k of the order, 0 or greater. Each number is used only once: after None, the
-            next attempt uses k + 1.
+            Number k of the order, 0 or greater. Each number is used only once: if the result is
+            None, the next attempt uses k + 1.
         uncommitted
             Units of each SKU that are stored and not needed for orders that have arrived, shape
             (K,).

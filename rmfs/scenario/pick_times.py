@@ -74,7 +74,9 @@ class UnitTimes:
 
 
 def learned(given: Learning | None, units: float) -> float:
-    """Return the factor on the time of the next unit after a number of units picked in this run.
+    """Return the learning factor of a picker who has picked `units` units in this run.
+
+    It applies to the time of the next unit.
 
     Unit n takes the time T1 (M + (1 - M) n**-b), where T1 is the time of the first unit and b =
     -log2(rate): Wright (1936) for M = 0, De Jong (1957) with the incompressible share M. The factor
@@ -89,8 +91,9 @@ def learned(given: Learning | None, units: float) -> float:
 
 
 def least_factor(given: Pickers) -> float:
-    """Return a lower bound of the factor on the drawn time of a unit, or 0 if none is known.
+    """Return a lower bound of the factor by which pickers and pods change a unit's drawn time.
 
+    It is the product of the bounds for speeds, layers and learning, or 0 if speeds are drawn.
     Fatigue and errors only increase the time.
     """
     if given.speed_variation:

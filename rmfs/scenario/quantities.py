@@ -26,11 +26,11 @@ class Block(Model):
 
 
 def not_below(value: Number, info: pydantic.ValidationInfo, key: str) -> Number:
-    """Return `value` if it is at least that of another key, which is validated first.
+    """Return `value` if it is not below the value of `key`, a field validated earlier.
 
-    The check belongs to the field that is validated later. The two values are therefore compared
-    even if other keys of the table are wrong, so that one message lists all errors. If one of the
-    two is wrong itself, they are not compared.
+    To be called by the validator of a single field: unlike a validator of the whole table, it also
+    runs if other fields are wrong, so that one message lists all errors. If one of the two values
+    is wrong itself, they are not compared.
 
     Raises
     ------

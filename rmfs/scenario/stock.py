@@ -36,7 +36,8 @@ class InitialStock:
     pod, sku, units
         Pod, SKU and units of each of the n bundles, shape (n,).
     share
-        Stored space / capacity of all pods; less than requested only if nothing more fits.
+        Space that the bundles take, as a share of the capacity of all pods; less than requested
+        only if nothing more fits.
     """
 
     pod: NDArray[np.int64]
@@ -74,9 +75,9 @@ def initial_stock(
         The run's seed.
     choose
         Function of a bundle and the free space of each pod (P,), which returns a pod with room for
-        it; only called if there is one. Default: any such pod, all equally likely.
+        it; only called if some pod has room. Default: any such pod, all equally likely.
     first
-        SKUs of bundles to store before any are drawn; a SKU may occur several times.
+        SKUs of the bundles to store before others are drawn; a SKU may occur several times.
 
     Raises
     ------

@@ -18,7 +18,7 @@ class Substreams:
     A counter-based generator (Philox) computes its numbers from a key and a counter. The key is
     derived from the seed and the stream, and the number of the substream is part of the counter.
     Switching to a substream therefore takes one microsecond; creating a generator would take ten.
-    Substreams do not overlap before 2**64 blocks of four numbers.
+    A substream has 2**64 blocks of four numbers before it overlaps with the next.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class Substreams:
         self._counter = self._start["state"]["counter"]
 
     def at(self, ordinal: int) -> Callable[[], float]:
-        """Return a function that returns the uniform numbers in [0, 1) of a substream, in order.
+        """Return a function whose k-th call returns number k of a substream, uniform in [0, 1).
 
         The function is valid until the next call of `at`, because all substreams share one
         generator.

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def to_toml(model: pydantic.BaseModel) -> str:
-    """Return every parameter of a model as TOML, including defaults, except those that are None.
+    """Return all parameters of a configuration, except those that are None, as TOML.
 
-    Reading the text back gives an equal model.
+    Defaults are included. Reading the text back gives an equal configuration.
     """
     return "\n".join(_table(model, [])).lstrip("\n") + "\n"
 

@@ -84,7 +84,7 @@ class OrderTopUp(_TopUp):
         time_s
             Current simulated time.
         waiting
-            Orders not yet at a station.
+            Number of orders not yet assigned to a station.
         stored
             Space units stored on all pods.
         """
@@ -118,7 +118,7 @@ class BundleTopUp(_TopUp):
         time_s
             Current simulated time.
         waiting
-            Bundles not yet assigned to a station and a pod.
+            Number of bundles that lack a station, a pod, or both.
         load
             Space units of stored units, bundles assigned to pods, and waiting bundles.
         """

@@ -87,7 +87,7 @@ class Applying:
         self._events.bundle_promised(decision.bundle)
 
     def release_pod(self, decision: say.ReleasePod) -> None:
-        """Release the bundles assigned to a pod, so that a station can be chosen for them."""
+        """Release the bundles promised to a pod; those that have a station are then assigned."""
         assigned = self._world.release_bundles(decision.pod)
         self._events.bundles_released(decision.pod)
         for bundle in assigned:

@@ -162,12 +162,12 @@ class ArrivalProcess:
 
     @property
     def active_pick_share(self) -> float:
-        """Number of active pick stations, at least 1, as a share of all pick stations."""
+        """Active pick stations as a share of all; if none is active, one is counted."""
         return _active_share(self._world.pick_stations)
 
     @property
     def active_replenishment_share(self) -> float:
-        """Number of active replenishment stations, at least 1, as a share of all of them."""
+        """Active replenishment stations as a share of all; if none is active, one is counted."""
         return _active_share(self._world.replenishment_stations)
 
 

@@ -17,7 +17,9 @@ K = TypeVar("K", bound="Kernel")
 
 
 class Checkpoints:
-    """A driver that saves the simulation periodically, and removes the file at the end.
+    """Runs a simulation to its end and saves it periodically; passed to `simulate` as `driver`.
+
+    The checkpoint file is removed at the end.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class PhaseConsult:
-    """Passes TA's questions to the installed controllers, and measures their calls."""
+    """Passes TA's questions to the installed controllers; times and counts the decisions."""
 
     def __init__(self, world: World, controllers: ControllerSet, deciding: Deciding) -> None:
         self._world = world

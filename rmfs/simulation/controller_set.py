@@ -39,9 +39,10 @@ class ControllerSet:
     installed
         The controller of each problem; the same mapping throughout the run.
     calls
-        For each trigger, the problems whose controllers are called after it.
+        For each `Trigger`, the problems whose controllers are called after it.
     listeners
-        For each trigger, methods that are called immediately.
+        For each `Trigger`, the methods `hear` of the controllers and trackers that are notified of
+        it immediately.
     """
 
     def __init__(

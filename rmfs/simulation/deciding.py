@@ -68,7 +68,7 @@ class Deciding:
     def connect(
         self, apply: Callable[[Any, Call | None], None], optimisers: OptimiserGateway
     ) -> None:
-        """Set the parts that apply decisions and that receive questions for optimisers."""
+        """Set the function that applies decisions, and the gateway for questions to optimisers."""
         self._apply, self._optimisers = apply, optimisers
 
     def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:
@@ -82,7 +82,7 @@ class Deciding:
         given
             Iterable of decisions; the controller makes each one when it is taken from the iterable.
         answer
-            The call to an optimiser on whose answer the decisions are based, if any.
+            The call to an optimiser, if the decisions are based on the answer to it.
 
         Raises
         ------
@@ -148,7 +148,9 @@ class Deciding:
         state: RuleState,
         answer: Call | None = None,
     ) -> None:
-        """Do as `ask` does, for a rule that questions decided outside the simulation may interrupt.
+        """Do as `ask` does, for a rule that may be interrupted to get an answer from outside.
+
+        Outside means outside the simulation, where some decision problems are decided.
 
         Parameters
         ----------
@@ -263,7 +265,8 @@ class Deciding:
         decided
             Whether the controller decided anything.
         call
-            The call to an optimiser from whose answer the decision follows; None: the rule decided.
+            The call to an optimiser, if the decision is based on the answer to it; None if the rule
+            decided.
         modelled
             Whether optimisers can make this kind of choice. A choice of another kind does not count
             as a decision that the rule made in place of an optimiser.

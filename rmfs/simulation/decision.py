@@ -52,15 +52,15 @@ class Decision:
 
     In POA, ROA, RPS, SA, MM, CA and TA, a question is a turn: call `answer` with one decision after
     another (see `rmfs.control.decisions`), each of which is applied immediately, and then `decline`
-    to end the turn. In PPS, PSA and repositioning, TA asks for one thing at a time: a pod, a
-    station, a storage location, or a `Move`.
+    to end the turn. A question of PPS, PSA or repositioning comes up while TA decides and has a
+    single answer: a pod, a station, a storage location, or a `Move`.
 
     Attributes
     ----------
     problem
         The decision problem.
     kind
-        `turn`, or a question of TA: `pick pod`, `replenishment pod`, `next station`, `place`,
+        `turn`, or what TA asks for: `pick pod`, `replenishment pod`, `next station`, `place` or
         `move`.
     view
         The world as controllers see it. It must not be changed.
@@ -85,13 +85,13 @@ class Decision:
 
     @property
     def robot(self) -> Robot | None:
-        """The robot that a question of TA concerns; None in a turn."""
+        """The robot for which TA asks; None in a turn."""
         number = self._question.robot
         return None if number < 0 else self.view.robots[number]
 
     @property
     def stations(self) -> tuple[int, ...]:
-        """The station that needs a pod, or the possible next stations; empty in other questions."""
+        """The station that needs a pod, or the possible next stations; otherwise empty."""
         return self._question.stations
 
     @property
@@ -121,8 +121,8 @@ class Decision:
         Raises
         ------
         ImpossibleError
-            If the answer is impossible, in which case nothing has changed and the question remains
-            open, or the question has already been answered; the message says why.
+            If the question has already been answered, or the answer is impossible; the message says
+            why. An impossible answer changes nothing, and the question remains open.
         """
         self._refuse_answered()
         reason = why_not(given, self._question, self.view)
@@ -131,7 +131,7 @@ class Decision:
         self._apply(given)
 
     def choose(self, row: int) -> None:
-        """Answer with a row of `candidates`, which is not checked again.
+        """Answer with a row of `candidates`, without the check that `answer` makes.
 
         Raises
         ------
@@ -149,8 +149,8 @@ class Decision:
         Raises
         ------
         ImpossibleError
-            If TA asks for the next of several stations, of which one must be chosen, or the
-            question has already been answered.
+            If the question is of the kind `next station`, where a station must be chosen, or has
+            already been answered.
         """
         self._refuse_answered()
         if self.kind == "next station":

@@ -114,7 +114,7 @@ class Dispatch:
     # --- tasks prepared ahead -------------------------------------------------------------------
 
     def prepare(self, decision: Prepare, call: Call | None = None) -> None:
-        """Store the tasks prepared for a robot, and the solution they come from."""
+        """Store the tasks prepared for a robot, and the optimiser call that gave them, if any."""
         robot, tasks = decision
         self.forget_prepared(robot)
         robot.prepared.extend(task.task() for task in tasks)
@@ -128,7 +128,7 @@ class Dispatch:
         robot.prepared.clear()
 
     def start_prepared(self, robot: Robot, consult: Consult) -> None:
-        """Start the first possible task prepared for a robot, skipping those before it."""
+        """Start the first possible task prepared for a robot, and discard those before it."""
         while robot.prepared:
             task = robot.prepared[0]
             if task.lacks_place and robot.pod >= 0:
@@ -181,7 +181,7 @@ class Dispatch:
         self._events.pod_lifted(world.now_s, pod, index, place)
 
     def at_head(self, index: int, station: int) -> None:
-        """Record that a robot has reached its station, and start to serve its pod."""
+        """Record that a robot has reached its station, and start its service there."""
         world = self._world
         robot, reached = world.robots[index], world.stations[station]
         robot.station = station
@@ -197,7 +197,7 @@ class Dispatch:
         self._events.pod_set_down(self._world.now_s, pod, index, robot.waypoint)
 
     def idle(self, index: int, _waypoint: int) -> None:
-        """End the task of a robot that has finished its program, if the task was to store a pod."""
+        """End the task of a robot that has done all its steps, if the task was to store a pod."""
         task = self._world.robots[index].task
         if task is not None and task.stores:
             end_task(self._world, self._events, index)

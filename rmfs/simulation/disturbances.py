@@ -69,8 +69,8 @@ class DisturbanceSource:
     ----------
     begun
         Disturbances so far, in the order in which they were recorded. `to_us` is `FOR_EVER_US`
-        while the end is not known; a breakdown is recorded with its start, which may be in the
-        near future, and its end.
+        while the end is not known. The end of a breakdown is known when it is recorded; its start
+        may then be in the near future.
 
     Raises
     ------
@@ -116,7 +116,7 @@ class DisturbanceSource:
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
         """Return the number of disturbances in a time interval, and their total time in it, in s.
 
-        Each of several simultaneous disturbances counts with its full time.
+        The times of simultaneous disturbances are added up.
         """
         start_us, end_us = round(start_s * 1e6), round(end_s * 1e6)
         parts = [

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def model_of(given: Energy) -> list[float]:
-    """Return the parameters of a scenario in the order that `Traffic.count_energy` expects."""
+    """Return the energy parameters of robots in the order that `Traffic.count_energy` expects."""
     return [
         given.robot_kg,
         given.rolling_resistance,
@@ -31,7 +31,7 @@ def model_of(given: Energy) -> list[float]:
 
 
 class PodMasses(Observer):
-    """Keeps the mass of each pod in traffic up to date: the pod itself and its contents.
+    """Keeps traffic informed of the mass of each pod, including its contents.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def work(decision: WorkFor, view: View, consult: Consult) -> TaskDecision | None:
-    """Return the task for a `WorkFor` decision, whose pod PPS chooses; None if it finds none."""
+    """Return the task for a `WorkFor` decision; None if PPS must choose a pod and finds none."""
     robot, station = decision
     if robot.pod >= 0:
         return bring(view, robot, robot.pod, station)

@@ -31,7 +31,7 @@ class Inputs:
     pacing
         (path, value) pairs for the pacing; the first key, `pacing`, is left out of the paths.
     notes
-        For each input, what an import of RAWSim-O files left out or does differently.
+        For each input imported from RAWSim-O files, what the import leaves out or changes.
     """
 
     layout: Layout
@@ -86,7 +86,9 @@ def load_inputs(
 
 
 def as_overrides(settings: Mapping[str, Any]) -> Overrides:
-    """Return parameters by dotted key as (path, value) pairs; classes become references.
+    """Split the dotted keys of `settings` into paths; return (path, value) pairs.
+
+    Values that are classes are replaced by names.
 
     Raises
     ------

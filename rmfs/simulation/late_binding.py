@@ -23,11 +23,12 @@ if TYPE_CHECKING:
 class LateBinding(Observer):
     """Adds new work to the tasks of pods that are on their way to a station.
 
-    It does so when an order is assigned or queued, a bundle is assigned, or a pod is lifted.
+    It does so when an order is assigned or queued (put into the pool of a station), a bundle is
+    assigned, or a pod is lifted.
 
     Requests of queued orders are also bound when a task starts. Otherwise, a task is extended only
-    while its pod is carried and at least one of its requests is left; a pod without requests is
-    considered when its robot asks for a task. If several pods qualify, the one that reaches the
+    while its pod is carried and it still has units to pick or bundles to store; when it has none
+    left, TA decides what the robot does next. If several pods qualify, the one that reaches the
     station first gets the work. The parameters of the PPS controller determine whether work is
     added at all, and whether requests of queued orders are bound as well.
     """
@@ -49,7 +50,7 @@ class LateBinding(Observer):
         self._orders.append(order)
 
     def order_queued(self, order: Order) -> None:
-        """Record an order that was queued for a pick station."""
+        """Record an order put into the pool of a pick station."""
         self._queued.append(order)
 
     def bundle_assigned(self, bundle: Bundle) -> None:

@@ -142,7 +142,7 @@ class Earnings(Observer):
         self._value += self._goal.units_stored * bundle.units * self._left(bundle.stored_s)
 
     def value(self, world: World) -> float:
-        """Return the value of the trial, less the costs of distance and of overdue orders.
+        """Return the value of the trial, with the costs of distance and overdue orders deducted.
 
         For an order that is not completed, the overdue time is counted up to now.
         """

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
     Limit = Callable[[int], int]
-    """Function of the present time in us. It returns the time in us up to which to simulate, and
-    may block first."""
+    """Function of the present time in us. It returns the latest time in us that may be simulated
+    now, and may block first."""
 
 SAMPLE_S = 60.0
 """Simulated time between two samples of the state of the run, in s."""
@@ -110,7 +110,8 @@ class Loop:
         RuleError
             If a user's controller decides something impossible.
         OptimiserError
-            If an optimiser fails and the pacing is a reproducible one.
+            If an optimiser fails and the pacing is a reproducible one, or a worker process of an
+            optimiser cannot start.
         ReplayError
             If a replayed run deviates from the recorded one.
         """
@@ -126,8 +127,9 @@ class Loop:
         Parameters
         ----------
         limit
-            Called before every instant with the present time in us; returns the time in us up to
-            which to simulate, and may wait first, for example for a page that shows the run.
+            Function called before every instant with the present time in us. It returns the latest
+            time in us that may be simulated now, and may wait first, for example to keep the run in
+            step with a page that shows it.
         """
         try:
             for percent in range(101 if progress is not None else 0):

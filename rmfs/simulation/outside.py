@@ -64,7 +64,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
 
 
 class Awaits(BaseException):
-    """A question must be answered outside the simulation, in the middle of a controller's work."""
+    """A controller at work has asked a question that must be answered outside the simulation."""
 
     def __init__(self, question: Question) -> None:
         super().__init__(question)
@@ -131,8 +131,8 @@ class Outside:
         Parameters
         ----------
         otherwise
-            Function that asks the installed controller; its answer is stored as well, so that it is
-            asked only once.
+            Function that asks the installed controller. The controller's answer is stored as well,
+            so that the controller is asked only once.
 
         Raises
         ------

@@ -43,7 +43,7 @@ def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderConten
 
 
 class PastOrders:
-    """Draws past orders, from the time before the run, when they are needed."""
+    """Draws orders from the time before the run whenever it is called; see `past_orders`."""
 
     def __init__(self, scenario: Scenario, skus: SkuSet, seed: int) -> None:
         self._scenario, self._skus, self._seed = scenario, skus, seed

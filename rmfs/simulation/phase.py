@@ -41,9 +41,9 @@ class DecisionPhase:
     """Processes the steps that are due.
 
     The order is: answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding, PPS, PSA,
-    CA, TA. Anything that a step makes due is done before later steps. PPS, PSA and repositioning
-    decide when TA asks them; the steps of PPS and PSA are only for questions to optimisers. TA is
-    also asked at the times that the controller of repositioning specifies.
+    CA, TA. After each step, the first one in this order that is then due comes next. PPS, PSA and
+    repositioning decide when TA asks them; the steps of PPS and PSA are only for questions to
+    optimisers. TA is also asked at the times that the controller of repositioning specifies.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class DecisionPhase:
         self._alarms.connect(steps.STEP_OF)
 
     def connect(self, applying: Applying, arrivals: ArrivalProcess) -> None:
-        """Set the parts that apply decisions and that create orders and bundles."""
+        """Set the part that applies decisions, and the one that creates orders and bundles."""
         self._applying, self._arrivals = applying, arrivals
         self._steps = self._what_is_done()
 
@@ -102,8 +102,8 @@ class DecisionPhase:
 
         Commitments of the previous controller are part of the world and remain: bundles on pods and
         at stations, orders and robots at work. What only the previous controller could continue is
-        undone: pools of queued orders, prepared tasks, and, if no remaining controller would
-        release them, bundles held back.
+        undone: pools are emptied, prepared tasks are dropped, and bundles held back are released
+        if the new controller would never release them.
         """
         problem, new = choice.problem, choice.controller
         if type(self._controllers[problem]) is not new:
@@ -250,7 +250,7 @@ class DecisionPhase:
             self._dispatch.start_prepared(robot, self._consult)
 
     def prepare(self, decision: say.Prepare, call: Call | None) -> None:
-        """Store tasks for later; if the robot is free, start the first one that is possible."""
+        """Record tasks that a robot is to do later; if it is free, start the first possible one."""
         robot = decision.robot
         rule = self._controllers[Problem.TA]
         self._dispatch.prepare(decision, call)
@@ -317,13 +317,15 @@ class DecisionPhase:
     # --- turns of the outside ---------------------------------------------------------------------
 
     def take(self, decision: Any) -> None:
-        """Apply a decision of a turn; open choices are passed to PPS, PSA or repositioning.
+        """Apply a decision made outside the simulation.
+
+        PPS, PSA or repositioning make the choices that it leaves open.
 
         Raises
         ------
         Awaits
-            If one of these is decided outside the simulation as well; the decision is applied once
-            that question has been answered.
+            If such a choice must be made outside the simulation as well; the decision is applied
+            once it has been made.
         """
         self.outside.doing = decision
         self.outside.begin_attempt()
@@ -351,7 +353,7 @@ class DecisionPhase:
         outside.begin_attempt()
 
     def advice(self, problem: Problem) -> Iterator[Any]:
-        """Return the decisions that the installed rule would make in a turn; none is applied."""
+        """Return the decisions that a problem's installed rule would make now; none is applied."""
         rule = self._controllers[problem]
         inside = PhaseConsult(self._world, self._controllers, self._deciding)
         decisions: Iterable[Any] = rule.decide(inside) if problem is Problem.TA else rule.decide()

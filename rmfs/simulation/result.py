@@ -49,8 +49,8 @@ class Run(Results):
     layout, scenario, controllers
         The simulated inputs, after overrides.
     names
-        Layout, scenario and controllers as specified by the user; interactive exchanges are
-        appended to the controllers.
+        Layout, scenario and controllers as specified by the user; controllers exchanged
+        interactively during the run are appended to the last name.
     overrides
         (path, value) pairs: those given, and those that a scenario of RAWSim-O implies for the
         layout.
@@ -134,7 +134,9 @@ class Run(Results):
         return self._ended.tables[name]
 
     def check(self) -> CheckReport:
-        """Verify with the independent checker that the motion is safe, and set `collisions`.
+        """Verify with the independent checker that the motion is safe.
+
+        The footprint then contains the number of `collisions`.
 
         Raises
         ------

@@ -24,7 +24,11 @@ _KNOWN: dict[type, bool] = {}
 
 
 class Kept(NamedTuple):
-    """A saved state of a controller, with the objects it refers to and the counts of its calls."""
+    """A saved state of a controller.
+
+    It includes the objects stored by reference, and for each call to an optimiser the numbers of
+    stale and handled parts of its answer.
+    """
 
     content: bytes
     shared: list[object]

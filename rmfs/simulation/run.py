@@ -73,7 +73,7 @@ def simulate(
         as a class: `{"controllers.psa.name": MyRule}`.
     overrides
         Parameters as (path, value) pairs, for example `(["layout", "robots"], 16)`; if `set` also
-        contains a parameter, that value is used.
+        contains a parameter, the value in `set` is used.
     observers
         Notified of everything that happens, in addition to the recorder of the standard measures.
     measures
@@ -94,8 +94,8 @@ def simulate(
     progress
         Called about a hundred times with the simulated time so far and in total, in s.
     remark
-        Called before the run with the input (`layout`, ...) and the text of each note on a file of
-        RAWSim-O: what is left out or done differently.
+        Called before the run for each note on what an import of RAWSim-O files left out or does
+        differently, with the input concerned (`layout`, ...) and the text.
     allow_not_well_formed
         Whether to accept a layout in which robots may block each other forever.
     traffic_maker
@@ -232,7 +232,8 @@ streams, remark, allow_not_well_formed, traffic_maker
         Raises
         ------
         InputError
-            If the pacing or that of path planning is `wall`: a copy could not continue identically.
+            If the pacing, or the pacing of path planning, is `wall`: a copy could not continue
+            identically.
         """
         return forking.fork(self)
 
@@ -242,7 +243,8 @@ streams, remark, allow_not_well_formed, traffic_maker
         Raises
         ------
         InputError
-            If the file cannot be written, or the pacing or that of path planning is `wall`.
+            If the file cannot be written, or if the pacing, or the pacing of path planning, is
+            `wall`.
         """
         saving.save(self, Path(path))
 

@@ -32,7 +32,7 @@ class Service(Protocol):
     """The service of one station."""
 
     def go_on(self) -> None:
-        """Serve the robot at the head as far as possible now."""
+        """Serve the robot at the head of the queue, as far as this is possible now."""
         ...
 
 
@@ -60,7 +60,7 @@ class Hands(Protocol):
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
-        """Start a unit, given its times in s in the layout, and return how it is handled."""
+        """Start to pick a unit, given its times in s in the layout; return how it is handled."""
         ...
 
 
@@ -68,9 +68,9 @@ class PickService:
     """The service of one pick station.
 
     A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
-    unit is picked leaves its slot when the station has finished that unit. If all requests of a pod
-    belong to queued orders, the pod waits if a slot is about to become free, and is sent away
-    otherwise.
+    unit is picked leaves its slot when the station has finished that unit. When only requests of
+    orders in the station's pool remain for a pod, the pod waits if a slot is about to become free,
+    and is sent away otherwise.
 
     Attributes
     ----------
@@ -100,7 +100,7 @@ class PickService:
         self.hands: Hands | None = None
 
     def go_on(self) -> None:
-        """Serve the robot at the head as far as possible now."""
+        """Serve the robot at the head of the queue, as far as this is possible now."""
         station, now_us = self._station, self._agenda.now_us
         if station.robot < 0 or now_us < self._robot_until_us:
             return
@@ -194,7 +194,8 @@ class PickService:
 class ReplenishmentService:
     """The service of one replenishment station.
 
-    A bundle is in its pod, and no longer counts as load of the station, when its transfer starts.
+    From the start of its transfer, a bundle counts as stored in its pod, and no longer as load of
+    the station.
     """
 
     def __init__(
@@ -212,7 +213,7 @@ class ReplenishmentService:
         self._busy_until_us = 0
 
     def go_on(self) -> None:
-        """Serve the robot at the head as far as possible now."""
+        """Serve the robot at the head of the queue, as far as this is possible now."""
         station = self._station
         if station.robot < 0 or self._agenda.now_us < self._busy_until_us:
             return
@@ -273,7 +274,7 @@ class VisitService:
         """Handle the end of the stay; the robot then needs a task."""
 
     def go_on(self) -> None:
-        """Start serving the pod at the head, if there is one."""
+        """Start serving the pod at the head of the queue, if there is one."""
         station, agenda = self.station, self._agenda
         task = self.world.robots[station.robot].task if station.robot >= 0 else None
         if self._served is not None or not isinstance(task, VisitTask):
@@ -291,7 +292,7 @@ class VisitService:
 
 
 def services_of(layout: Layout, *, agenda: Agenda, world: World, events: Events) -> list[Service]:
-    """Create the service of every station, in the common numbering."""
+    """Create the service of every station, in the order of `layout.stations`."""
     parts: dict[str, Any] = {
         plan.kind.name: plan.kind.part("service", object) for plan in layout.stations
     }

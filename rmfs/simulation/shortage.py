@@ -84,7 +84,7 @@ def short_orders(
     events: Events,
     changed: Callable[[], None],
 ) -> list[Observer]:
-    """Return a list with the observer that checks orders; empty if such orders just wait."""
+    """Return a list with the observer that checks orders; empty if the policy is `wait`."""
     if given.policy == "wait":
         return []
     return [ShortOrders(given, agenda=agenda, world=world, events=events, changed=changed)]

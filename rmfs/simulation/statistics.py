@@ -21,8 +21,8 @@ class DecisionStatistics:
     decisions
         Number of decisions made in all calls.
     last_s
-        Simulated time of the last decision in s, including those in the warm-up; -1 if there was
-        none.
+        Simulated time of the last decision in s, even if it was made in the warm-up; -1 if there
+        was none.
     wall_ns
         Wall time of each call in ns, excluding the time of other controllers that it consulted.
     """

@@ -102,7 +102,7 @@ class Due:
         self.bits |= 1 << ANSWERS
 
     def place_left(self) -> None:
-        """Record that a storage location was left, for which a robot may be waiting."""
+        """Record that a robot left storage locations that other robots may be waiting for."""
         if self._world.asking:
             self.bits |= 1 << TASKS
 

@@ -30,11 +30,11 @@ class Triggers(Observer):
         self._signal(Trigger.NEW_ORDER, order)
 
     def order_assigned(self, order: Order) -> None:
-        """Signal that an order was assigned, which may need pods."""
+        """Signal that an order was assigned and may need pods."""
         self._signal(Trigger.ORDER_ASSIGNED, order)
 
     def order_queued(self, order: Order) -> None:
-        """Signal that an order was queued, for which pods may be fetched in advance."""
+        """Signal that an order was queued, so that pods may be fetched for it in advance."""
         self._signal(Trigger.ORDER_QUEUED, order)
 
     def unit_picked(
@@ -71,7 +71,7 @@ class Triggers(Observer):
         self._signal(Trigger.BUNDLE_SENT, bundle)
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """Signal that a bundle was assigned, which may need a pod."""
+        """Signal that a bundle was assigned and may need a pod."""
         self._signal(Trigger.BUNDLE_ASSIGNED, bundle)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
@@ -87,7 +87,7 @@ class Triggers(Observer):
         self._signal(Trigger.ROBOT_FREE, robot)
 
     def place_left(self, robot: int) -> None:
-        """Signal that a storage location was left, for which a robot may be waiting."""
+        """Signal that a robot left storage locations that other robots may be waiting for."""
         self._place_left()
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:

@@ -26,10 +26,9 @@ S = TypeVar("S", bound=Station[Any])
 class VisitController(Observer, Generic[S]):
     """Base class of controllers that decide which pods go to the stations of a kind, and when.
 
-    A controller is asked about each robot that needs a task, before all other controllers, and
-    observes the run with the callbacks of `Observer`. It changes nothing itself; its decisions are
-    applied by the simulation. It must hold plain data, because a run can be copied or saved at any
-    moment.
+    A controller is asked about each robot that needs a task, before TA is asked, and observes the
+    run with the callbacks of `Observer`. It changes nothing itself; its decisions are applied by
+    the simulation. It must hold plain data, because a run can be copied or saved at any moment.
 
     Parameters
     ----------

@@ -113,5 +113,5 @@ class Conversation:
     def begin(
         self, now_us: int, agents: list[tuple[Any, ...]]
     ) -> Generator[Question, Any, list[Way | None]]:
-        """Start a call of the planner; its questions and answers pass unchanged."""
+        """Start a call of the planner; questions and answers are passed on unchanged."""
         return self._planner.plan(now_us, [Agent(*agent) for agent in agents])

@@ -48,7 +48,7 @@ class Readings:
         return self._core.energy()
 
     def used_j(self, robot: int) -> float:
-        """Return the energy drawn by a robot since time zero, in J."""
+        """Return the energy used by a robot since time zero, less recuperated energy, in J."""
         return self._core.used(robot)
 
     def level_j(self, robot: int) -> float:
@@ -105,8 +105,9 @@ class Readings:
         """Return the part of the trace that previous calls have not returned, to follow a run.
 
         The motion that each robot is currently executing is included, and is returned again until
-        it has ended. A row therefore replaces all earlier rows of its robot from `t0_us` on. A
-        robot that stood still during several calls has several consecutive rows (`joined_holds`).
+        it has ended. A row therefore replaces everything that earlier calls returned for its robot
+        from `t0_us` on. If a robot stands still during several calls, it gets several consecutive
+        rows, which `joined_holds` merges.
 
         Parameters
         ----------

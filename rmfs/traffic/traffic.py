@@ -332,10 +332,10 @@ class Traffic(Readings):
     def close(self, waypoints: Sequence[int]) -> list[int]:
         """Close waypoints from now on: no robot enters them until they are reopened.
 
-        A robot that is on a closed waypoint, or can no longer stop before one, continues and leaves
-        it. A robot whose plan leads there later gets another plan, or stops before it and waits. An
-        idle robot on a closed waypoint stays. Close all waypoints of an elevator to put it out of
-        service.
+        A robot that is on a closed waypoint continues and leaves it, unless it is idle. A robot
+        that can no longer stop before one drives through. Any other robot whose plan leads to a
+        closed waypoint gets another plan, or stops before that waypoint and waits. Close all
+        waypoints of an elevator to put it out of service.
 
         Parameters
         ----------

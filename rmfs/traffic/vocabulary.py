@@ -16,7 +16,7 @@ class Step(IntEnum):
 
 
 class EventKind(IntEnum):
-    """Kinds of events of traffic, with the meaning of each event's value in brackets."""
+    """Kinds of events of traffic; brackets tell what the `value` of an event of each kind is."""
 
     ARRIVED = 0
     """The robot has finished a drive (waypoint)."""
@@ -41,7 +41,8 @@ class EventKind(IntEnum):
 class Piece(IntEnum):
     """Kinds of rows in a trace.
 
-    For GUIDED motion, only the path of a robot is known, and not its position on the path.
+    A run is recorded as GUIDED if it was delayed on its way: the robot's path is known, but not its
+    position on the path.
     """
 
     HOLD = 0
@@ -63,7 +64,7 @@ class TripKind(IntEnum):
 
 
 class TrafficEvent(NamedTuple):
-    """An event of traffic, as `Traffic.advance` yields it (a plain tuple in the same order)."""
+    """An event of traffic; `Traffic.advance` returns plain tuples of these values in this order."""
 
     time_us: int
     kind: int
@@ -88,11 +89,11 @@ class CutOff(NamedTuple):
     Attributes
     ----------
     storage
-        Storage locations (waypoints) that are closed, or that lack a route for pods to or from at
-        least one of the remaining stations.
+        Storage locations (waypoints) that are closed, or that routes for pods do not connect with
+        every remaining station in both directions.
     stations
-        Stations (numbers) that are closed, or for which every storage location lacks a route for
-        pods to or from the station.
+        Stations (numbers) that are closed, or that routes for pods do not connect with any storage
+        location in both directions.
     """
 
     storage: list[int]

@@ -52,7 +52,7 @@ class TripRun:
 
     @property
     def trips_per_h(self) -> float:
-        """Trips to any kind of goal finished after the warm-up, per simulated hour."""
+        """Number of trips finished after the warm-up, to goals of any kind, per simulated hour."""
         return len(self.delays_s) / (self.end_s - self.warmup_s) * 3600.0
 
     @property
@@ -97,7 +97,7 @@ def drive(
     stall_s
         Driving is given up if no event occurs for this time, in s, while robots wait for a path.
     cost_table_bytes
-        Memory for tables of unhindered travel times, in bytes.
+        Memory, in bytes, for tables of unhindered travel times.
     each
         Called with the traffic whenever simulated time has advanced; no advance goes beyond the
         next event.

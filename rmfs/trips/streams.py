@@ -31,7 +31,7 @@ class Command(NamedTuple):
     Attributes
     ----------
     at_us
-        Time in microseconds.
+        Time, in microseconds, at which the command is to be given.
     program
         Steps, as for `Traffic.command`.
     """
@@ -51,7 +51,7 @@ class TripStream(Protocol):
         """Return the commands that follow an event of traffic."""
 
     def given(self, command: Command) -> Iterable[Command]:
-        """Return commands to other robots that become possible when a command has been given."""
+        """Return the commands that other robots can get as soon as `command` has been given."""
 
 
 class PodTrips:
@@ -59,17 +59,16 @@ class PodTrips:
 
     Pods and free storage locations are divided among the robots, so that robots do not affect each
     other's choices. If the queue of a station has n places, including the station itself, at most
-    max(1, n - 1) robots are on their way to it or in it; further robots wait beneath their pods
-    (condition W3 of `docs/safety.md`).
+    max(1, n - 1) robots are on their way to it or in it (condition W3 of `docs/safety.md` allows
+    n); further robots wait beneath their pods.
 
     Parameters
     ----------
     seed
-        Seed of the choice of pods, stations and storage locations and of service times, 0 or
-        greater.
+        Seed, 0 or greater, with which pods, stations, storage locations and service times are
+        drawn.
     service_s
-        Mean service time of a pod in s. Service times are uniform between half and one and a half
-        times this mean.
+        Mean service time of a pod in s. Service times are uniform from 0.5 to 1.5 times this mean.
 
     Raises
     ------
@@ -110,7 +109,7 @@ class PodTrips:
             yield from self._next(time_us, robot)
 
     def given(self, command: Command) -> Iterator[Command]:
-        """Send the next robot to the station that a robot leaves."""
+        """When a robot leaves a station, send the next waiting robot to that station."""
         station = self._station[command.robot]
         if command.program[-1][0] != Step.SET_DOWN:
             return
@@ -155,7 +154,7 @@ class PointTrips:
     goals
         For each robot, the waypoints to which it drives in order.
     shared
-        Goals assigned in this order to robots without goals of their own.
+        Goals for robots that have no goals of their own left, assigned in this order.
     """
 
     def __init__(self, goals: Sequence[Iterable[int]], shared: Iterable[int] = ()) -> None:
@@ -173,7 +172,7 @@ class PointTrips:
             yield from self._next(time_us, robot)
 
     def given(self, _command: Command) -> Iterator[Command]:
-        """Return no commands, since none depends on another robot."""
+        """Return no commands, since no robot waits for another robot's command."""
         return iter(())
 
     def _next(self, time_us: int, robot: int) -> Iterator[Command]:
@@ -204,7 +203,8 @@ def random_trips(layout: Layout, seed: int, *, service_s: float = SERVICE_S) -> 
     Raises
     ------
     InputError
-        If there are fewer pods than robots, or fewer than two waypoints.
+        If a layout with stations and pods has fewer pods than robots, or any other layout has
+        fewer than two waypoints.
     """
     if layout.stations and layout.pods:
         return PodTrips(layout, seed, service_s=service_s)

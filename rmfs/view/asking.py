@@ -25,7 +25,7 @@ LONGEST_NAME = 64
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """The numbers of rows of the trace, and of events, that a page already has.
+    """How many rows of the trace, and how many events, a page already has.
 
     Raises
     ------
@@ -45,7 +45,7 @@ class Known:
 
 @dataclass(eq=False)
 class Request:
-    """A task that the thread of the run does for a page, which receives the error if it fails."""
+    """A task that the run's thread does for a page; if the task fails, the page gets the error."""
 
     done: threading.Event = field(default_factory=threading.Event)
     error: Exception | None = None
@@ -64,7 +64,7 @@ class Request:
 
 @contextmanager
 def concern_of(request: Request) -> Iterator[None]:
-    """Return a context in which to carry out a page's request; its end marks the request as done.
+    """Return a context for work on a page's request; leaving it marks the request as done.
 
     An error is passed to the page and does not stop the run.
     """
@@ -93,7 +93,7 @@ class Exchange(Request):
 
 
 def page_name(page: object) -> str:
-    """Return the name of a page, a text of 1 to `LONGEST_NAME` characters.
+    """Return `page` if it can be the name of a page: a text of 1 to `LONGEST_NAME` characters.
 
     Raises
     ------

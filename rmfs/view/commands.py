@@ -74,8 +74,8 @@ def watched(
     speed
         Initial speed in simulated seconds per wall second. Default: as fast as possible.
     await_page
-        Whether to wait for a page, at most `PAGE_PATIENCE_S`, before the run begins, even if this
-        call opens none.
+        Whether to wait for a page before the run begins, at most `PAGE_PATIENCE_S`. If a browser is
+        opened, the run waits for its page in any case.
 
     Raises
     ------

@@ -61,8 +61,9 @@ def form(chosen: dict[str, str]) -> dict[str, Any]:
     -------
     dict
         `names` holds the possible choices, and `chosen` the present ones. `layout` and `scenario`
-        hold the `schema` and the `values` of their file; `controllers` holds the decision
-        `problems`, with their rules, and the `values`.
+        each hold the `schema` and the `values` of their parameters. `controllers` holds the
+        decision `problems` with their rules, and as `values` the chosen rule of each problem with
+        its parameters.
 
     Raises
     ------

@@ -199,15 +199,15 @@ class LiveRun:
     def news(self, known: Known, page: str = "") -> bytes:
         """Return the packed motion and events that a page does not know yet.
 
-        A row of motion replaces all that the page knows about the motion of the same robot from
-        the time at which the row starts.
+        A row of motion replaces all rows of the same robot that the page already has and that
+        start at the same time or later.
 
         Parameters
         ----------
         known
-            Numbers of rows that the page already has.
+            How many rows of motion and how many events the page already has.
         page
-            Name of the page that asks, so that its absence is noticed.
+            Name of the page that asks. A page that has not asked for `ABSENT_S` counts as gone.
 
         Raises
         ------

@@ -104,7 +104,7 @@ class Pace:
         return paid_us if paid_us >= now_us + self._quantum_us(self.speed) else None
 
     def wait_s(self, now_us: int, wall_s: float) -> float | None:
-        """Return the wall time in s after which to call `limit_us` again.
+        """Return how long to wait before the next call of `limit_us`, in s of wall time.
 
         Return None if only a request can change the result of `limit_us`.
         """

@@ -28,7 +28,7 @@ def content(name: str) -> bytes:
 
 
 def single_file(scenes: list[bytes]) -> bytes:
-    """Return the page with script, style and scenes inside, and a policy that permits only these.
+    """Return the page as one file with script, style and scenes; its policy permits no others.
 
     Parameters
     ----------

@@ -157,9 +157,9 @@ def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:
 
 
 def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
-    """Return a trace, sorted by robot and time, as arrays.
+    """Return a trace as arrays; its rows must be sorted by robot and time.
 
-    The rows of robot r begin at `motion.robot_start[r]`. A row ends when the robot's next row
+    The rows of robot r begin at index `motion.robot_start[r]`. A row ends when the robot's next row
     begins; the last row of robot r ends at `motion.end_us[r]`.
     """
     start = np.searchsorted(trace["robot"], np.arange(robots + 1)).astype(np.int32)

@@ -68,7 +68,8 @@ class Server(ThreadingHTTPServer):
     Parameters
     ----------
     get, post
-        Handlers of GET and POST requests by path: functions of the query, or of the JSON sent.
+        Handlers of GET and POST requests by path: functions of the query (GET) or of the JSON that
+        was sent (POST).
     port
         Port to use. Default: any free one.
 
@@ -110,7 +111,10 @@ class Server(ThreadingHTTPServer):
 
     @property
     def cookie(self) -> str:
-        """Name of the cookie with the token; the name contains the port, as ports share cookies."""
+        """Name of the cookie with the token.
+
+        The name contains the port, as servers on different ports of a host share cookies.
+        """
         return f"rmfs-{self.server_port}"
 
     def process_request(self, request: Any, client_address: Any) -> None:
@@ -131,7 +135,7 @@ class Server(ThreadingHTTPServer):
         super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
-        """Serve a connection, then remove it from the list."""
+        """Serve a connection, then count it as closed."""
         try:
             super().process_request_thread(request, client_address)
         finally:

@@ -30,8 +30,8 @@ class Theme:
     pod, elevator
         Colours of pods and of elevators.
     towards, share
-        Colour that is mixed into the colour of a station that is neither a pick nor a replenishment
-        station, and its share of the mixture.
+        Colour that is mixed into the colours of stations other than pick and replenishment
+        stations, and the share of this colour in the mixture.
     stations, tasks
         Colours of stations by kind, and of robots by task.
     delay

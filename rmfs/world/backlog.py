@@ -59,8 +59,8 @@ class OrderBacklog:
     def units(self) -> NDArray[np.int32]:
         """Open units of each line, 0 where there is no line, shape (B, L).
 
-        All units are open, except those already bound to a pod, which is possible if the order is
-        in a station's pool.
+        A unit is open until it is bound to a pod. In the backlog, only units of orders in a
+        station's pool can be bound.
         """
         return self._units[: len(self.at_row)]
 
@@ -174,8 +174,9 @@ class OrderBacklog:
 class BundleBacklog:
     """Bundles that are not assigned yet.
 
-    RPS promises a bundle to a pod, and later releases this choice, perhaps for several bundles
-    together; ROA chooses the station. When both have been done, the bundle is assigned.
+    RPS chooses the pod of a bundle (the bundle is promised to the pod), and later releases all
+    bundles promised to that pod together. ROA chooses the station. Once a bundle has been released
+    and has a station, it is assigned.
 
     Attributes
     ----------
@@ -190,7 +191,7 @@ class BundleBacklog:
         By pod, the time in s at which the last of its unreleased bundles was promised; pods are
         sorted by this time.
     released
-        By pod, the released bundles without a station, the pod released first at the front.
+        By pod, the released bundles without a station; pods are in order of release.
     space
         Space units of all bundles.
     """
@@ -218,7 +219,7 @@ class BundleBacklog:
         self.space += bundle.space
 
     def promised(self, bundle: Bundle, time_s: float) -> None:
-        """Record that RPS chose a bundle's pod (`bundle.pod`) without releasing the choice."""
+        """Record that RPS chose a bundle's pod (`bundle.pod`); the bundle is not released yet."""
         del self.without_pod[bundle.index]
         self.unreleased.setdefault(bundle.pod, []).append(bundle)
         self.unreleased_since_s.pop(bundle.pod, None)
@@ -243,6 +244,6 @@ class BundleBacklog:
                 del self.released[bundle.pod]
 
     def remove(self, bundle: Bundle) -> None:
-        """Remove a bundle for which both decisions have been made."""
+        """Remove a bundle that has been released and has a station."""
         del self.bundles[bundle.index]
         self.space -= bundle.space

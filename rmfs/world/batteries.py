@@ -22,9 +22,9 @@ class Levels(Protocol):
     """The part of the traffic model that knows the levels of batteries."""
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return arrays of energies in J, with one value per robot, by name of the quantity.
+        """Return quantities by name, each as an array with one value per robot.
 
-        `level_j` is the energy in each battery.
+        Energies are in J; `level_j` is the energy in each battery.
         """
         ...
 
@@ -38,7 +38,7 @@ class Levels(Protocol):
 
 
 class Batteries:
-    """The batteries of all robots, which are all of the same kind.
+    """The batteries of all robots; all batteries are of the same kind.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ class Batteries:
     capacity_j, least_j, reserve_j
         Capacity of a battery, minimum level and additional reserve, in J.
     enough_share
-        Level (share of capacity) from which a robot has enough energy for any task, with a margin;
+        Lowest level (share of capacity) that counts as enough energy for any task, with a margin;
         set at the start of a run.
     stranded
         Robots that stand still because their level fell below the minimum.

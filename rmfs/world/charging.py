@@ -45,12 +45,12 @@ class RecoveryStation(Station[ChargeTask]):
     """A station where robots get energy; its tasks are indexed by robot, not by pod."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
-        """Check that the tasks are those of the robots.
+        """Check that each task at this station is the present task of its robot.
 
         Raises
         ------
         AssertionError
-            If they are not.
+            If one is not.
         """
         for robot, task in self.tasks.items():
             if (task.robot, task.station, robots[robot].task) != (robot, self.index, task):

@@ -50,7 +50,8 @@ class Inventory:
         Units per SKU and pod, shape (K, P): rows are contiguous, since rules compare few SKUs over
         all pods.
     used, promised, load
-        Space units of the units contained, those promised, and their sum, per pod, shape (P,).
+        Space taken by the units on each pod, space promised on it, and the sum of both, in space
+        units, shape (P,).
     inbound
         Available units on the pods at, or on their way to, each pick station, shape (S, K).
     uncommitted
@@ -105,10 +106,10 @@ class Inventory:
 
     @property
     def skus_on(self) -> NDArray[np.int32]:
-        """The SKUs that each pod contains, in any order, padded with K, shape (P, M).
+        """The SKUs that each pod contains, in any order, shape (P, M); unused entries are K.
 
-        With K + 1 weights, the last of them 0, `weights[skus_on].sum(axis=1)` is the sum over the
-        SKUs of each pod.
+        If `weights` has one weight per SKU and a final 0, `weights[skus_on].sum(axis=1)` is, for
+        each pod, the sum of the weights of its SKUs.
         """
         return read_only(self._skus_on)
 
@@ -118,7 +119,7 @@ class Inventory:
         return skus
 
     def stock(self, pod: int, sku: int, units: int) -> None:
-        """Put units on a pod for which no space was promised, such as the stock at time zero."""
+        """Put units on a pod without a promise of space for them, as for the stock at time zero."""
         space = units * self._unit_space_list[sku]
         before = self._contained.item(sku, pod)
         if not before and units:
@@ -155,7 +156,7 @@ class Inventory:
         self.promised_space -= space
 
     def store(self, pod: int, sku: int, units: int) -> None:
-        """Put units on a pod in space that was promised to them."""
+        """Put units on a pod, in space that was promised for them."""
         self.withdraw(pod, units * self._unit_space_list[sku])
         self.stock(pod, sku, units)
 
@@ -176,13 +177,13 @@ class Inventory:
     def commit(self, sku: int, units: int) -> None:
         """Subtract units from `free_stock`; a negative number adds them again.
 
-        Units are subtracted when their order is assigned to a station, or when requests of a queued
-        order are bound to a pod.
+        Units are subtracted when their order is assigned to a station or, if they are bound to a
+        pod while the order is still in a station's pool, when they are bound.
         """
         self._free_stock[sku] -= units
 
     def bind(self, pod: int, sku: int, units: int) -> None:
-        """Bind units on a pod to extract requests of committed orders.
+        """Bind available units on a pod to requests of orders.
 
         Raises
         ------

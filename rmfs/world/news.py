@@ -6,10 +6,11 @@ _MOST = 16
 
 
 class News:
-    """Notifications of which things, such as stations, have changed; things are numbered from 0.
+    """Tells its followers which things, such as stations, have changed; things are numbered from 0.
 
-    An exchanged controller does not unsubscribe, so the number of followers is limited: the oldest
-    are dropped. If a dropped follower asks for changes again, all things count as changed.
+    A controller that is replaced during a run does not unsubscribe its follower, so the number of
+    followers is limited: the oldest are dropped. A dropped follower that asks for changes again is
+    subscribed again, and all things count as changed.
 
     Parameters
     ----------
@@ -36,7 +37,7 @@ class News:
 
 
 class Follower:
-    """The changes since a follower last asked for them.
+    """A subscriber to `News`: collects what has changed since it was last asked.
 
     Parameters
     ----------

@@ -90,10 +90,10 @@ class OrderOperations(WorldState):
         self.orders.queue_changed(order)
 
     def assign_order(self, order: Order, station: int) -> Order:
-        """Assign an order of the backlog to a pick station and open its extract requests.
+        """Assign an order of the backlog to a pick station; its open requests become the station's.
 
-        Requests of an order in the station's pool that are already bound to pods stay bound. If a
-        part of the order is at the station already, the remaining lines join that part.
+        If the order was in the station's pool, requests already bound to pods stay bound. If a part
+        of the order is at the station already, the remaining lines join that part.
 
         Returns
         -------
@@ -127,11 +127,11 @@ class OrderOperations(WorldState):
         return order
 
     def assign_lines(self, order: Order, station: int, skus: Collection[int]) -> Order:
-        """Assign some lines of an order of the backlog to a pick station, which splits the order.
+        """Split an order of the backlog by assigning some of its lines to a pick station.
 
-        The lines join the part of the order at the station, or become a part of their own, which
-        takes a slot. If they are all that is left and there is no such part, the order itself takes
-        the slot.
+        If a part of the order is at the station already, the lines join it. Otherwise they become a
+        new part, which takes a slot; but if they are all the lines that the order has left, the
+        order itself takes the slot.
 
         Returns
         -------
@@ -141,8 +141,8 @@ class OrderOperations(WorldState):
         Raises
         ------
         ValueError
-            If the order has no such lines, is not in the backlog or is in a pool, or if a slot is
-            needed and the station is inactive or has none free.
+            If the order has no line of these SKUs, is not in the backlog or is in a pool, or if a
+            slot is needed and the station is inactive or has none free.
         """
         target = self.pick_stations[station]
         lines = tuple(line for line in order.lines if line.sku in skus)
@@ -176,7 +176,7 @@ class OrderOperations(WorldState):
         return part
 
     def _open(self, station: PickStation, lines: tuple[OrderLine, ...]) -> None:
-        """Open the extract requests of lines that have just come to a station with their order."""
+        """Count the lines that have come to a station, and add their open requests to its own."""
         station.requests.add_lines(lines)
         for line in lines:
             self._lines[station.index, line.sku] += 1
@@ -195,7 +195,7 @@ class OrderOperations(WorldState):
         -------
         Order or None
             The customer's order, if it is now complete; None if other parts of it are at stations
-            or in the backlog.
+            or some of its lines are in the backlog.
 
         Raises
         ------

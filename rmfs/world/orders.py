@@ -57,7 +57,7 @@ class Order:
     station
         The pick station, or -1 while in the backlog.
     queued_at
-        The pick station for which an order of the backlog is reserved (in its pool), or -1.
+        The pick station in whose pool the order is, or -1.
     whole
         The order of which this is a part; None if it is not a part.
     parts
@@ -69,9 +69,9 @@ class Order:
     cancelled_s
         Time at which it was cancelled because stock could not serve it.
     units_cut
-        Number of ordered units that are not delivered.
+        Number of ordered units that will not be delivered, for lack of stock.
     priority
-        Number of its class; -1 in scenarios without classes (`orders.due.mode = "classes"`).
+        Number of its class if `orders.due.mode = "classes"`, otherwise -1.
     weight
         Weight of its lateness, given by its class.
     """
@@ -113,7 +113,7 @@ class Order:
             order.unpicked_units += sign * sum(line.open_units for line in lines)
 
     def cut(self, keep: Mapping[int, int]) -> None:
-        """Reduce the units of lines, none of which may be bound; lines without units are removed.
+        """Reduce the units, none of which may be bound to a pod; remove lines left without units.
 
         Parameters
         ----------
@@ -149,9 +149,9 @@ class Order:
 class Bundle:
     """A replenishment order: units of one SKU that go into one pod at one station.
 
-    Two decisions are needed. RPS reserves room on a pod and releases that decision, perhaps after
-    waiting for more bundles for the same pod; ROA chooses the station. When both have been made,
-    the bundle is *assigned*: an insert request that only its pod can serve.
+    Two decisions are needed. RPS reserves room on a pod and releases the bundle, at once or after
+    waiting for more bundles for the same pod; ROA chooses the station. Once the bundle is released
+    and has a station, it is *assigned*: it waits at the station for its pod.
 
     Attributes
     ----------
@@ -160,7 +160,7 @@ class Bundle:
     pod
         The pod with reserved room, or -1.
     released
-        Whether RPS has released the choice of the pod.
+        Whether RPS has released the bundle.
     station
         The replenishment station with reserved space, or -1.
     stored_s

@@ -44,7 +44,7 @@ class Picker:
     home
         Pick station during that shift.
     speed
-        Speed relative to the station's times; 2: half the time.
+        Relative speed; at 2, a unit takes half the station's time.
     station
         Current station, or -1 while away.
     since_s

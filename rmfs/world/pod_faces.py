@@ -40,7 +40,7 @@ class PodFaces(PodParts):
     def take(self, pod: int, sku: int, shown: int) -> int:
         """Take a unit of a SKU, and return the face from which it is taken.
 
-        This is the face shown if it has such a unit, otherwise the face with most of them.
+        This is the face shown if it has such a unit, otherwise the face with the most such units.
 
         Parameters
         ----------

@@ -19,8 +19,8 @@ _HAIR = 1e-9
 class PodParts:
     """The parts in which the units of each pod lie.
 
-    Each part has an equal share of the pod's capacity. Units that fit into no single part, although
-    the pod has room for them in total, go to the part with the most room.
+    Each part has an equal share of the pod's capacity. Units for which no part has enough room,
+    although the pod as a whole has, go to the part with the most room.
 
     Parameters
     ----------

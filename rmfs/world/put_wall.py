@@ -29,8 +29,8 @@ class Tote:
     released_s
         Time in s at which the tote left the station.
     arrived_s
-        Time in s at which the tote reached the wall; nan while it is on its way, and if it does not
-        go there.
+        Time in s at which the tote reached the wall; nan until then, and for a tote that is packed
+        without the wall.
     by_hand
         Whether the tote was carried to the wall by hand because it had waited too long.
     """
@@ -145,7 +145,7 @@ class PutWall:
         return self.slots is None or self.kept + self._more(order, last) <= self.slots
 
     def release(self, order: Order, station: int, now_s: float, *, last: bool) -> Tote:
-        """Create a tote that leaves its pick station, and reserve the slot that it needs.
+        """Create a tote that leaves its pick station, and reserve a slot if it needs one.
 
         Parameters
         ----------

@@ -24,7 +24,8 @@ class OpenRequests:
     Parameters
     ----------
     need
-        Open units per SKU, shape (K,): the station's row of a matrix, which is updated here.
+        Open units per SKU, shape (K,): the station's row of `WorldState.need` or `queued_need`,
+        kept up to date here.
     news, station
         Followers of `news` are notified of this station when the first request is added and when
         the last one is removed.
@@ -32,7 +33,8 @@ class OpenRequests:
     Attributes
     ----------
     lines
-        By SKU, the lines with open units in the order of assignment.
+        By SKU, the lines with open units, in the sequence in which they were added, apart from
+        those that `reopen` put first.
     units
         Open units in total.
     version

@@ -58,8 +58,7 @@ class WorldState:
     need
         Open units of the orders at each pick station, per SKU, shape (S, K).
     queued_need
-        Open units of the orders of the backlog that are reserved for each pick station (in its
-        pool), per SKU, shape (S, K).
+        Open units of the orders in the pool of each pick station, per SKU, shape (S, K).
     lines
         Number of order lines of the open orders per pick station and SKU, picked or not, shape
         (S, K).
@@ -91,7 +90,7 @@ class WorldState:
     staff
         The pickers at the pick stations; None in scenarios without pickers.
     split_orders
-        Split orders with units still to be picked, by index.
+        Split orders that are not complete yet, by index.
     tasks_dropped
         Number of prepared tasks that had become impossible when they were due.
     """

@@ -38,7 +38,7 @@ class Station(Generic[T]):
     visits
         How often a robot has reached the head of the queue so far.
     tasks
-        By pod, the tasks in which a pod is to be, or is being, served here, in order of creation.
+        By pod, the unfinished tasks of bringing a pod to this station, oldest first.
     """
 
     def __init__(self, index: int, number: int, waypoint: int, tier: int) -> None:
@@ -94,7 +94,7 @@ class Station(Generic[T]):
 
     @property
     def has_open_work(self) -> bool:
-        """Whether it has work for which no pod is under way; by default never."""
+        """Whether it has work for which no pod is under way; by default False."""
         return False
 
     @property
@@ -140,7 +140,7 @@ class PickStation(Station[PickTask]):
         self.queued_requests = OpenRequests(queued_need, work_news, index)
 
     def changed(self) -> None:
-        """Notify followers that keep lists of stations with slots."""
+        """Tell the followers of `WorldState.slot_news` that this station has changed."""
         self._slot_news.tell(self.index)
 
     @property
@@ -174,8 +174,8 @@ class ReplenishmentStation(Station[ReplenishTask]):
     capacity
         Maximum of `used`, in space units.
     used
-        Space units of the bundles that are assigned, or for which ROA has reserved space, and whose
-        transfer has not started.
+        Space units of the bundles for which ROA has reserved space here and whose transfer has not
+        started.
     bundles
         Number of the bundles counted in `used`.
     waiting

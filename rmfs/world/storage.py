@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Storage:
-    """Places, pods and the robots that keep them.
+    """Places, the pods stored at them, and the robots that keep them.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class Storage:
             self._refresh(self.place_of[pod])
 
     def keep(self, robot: Robot, place: int) -> None:
-        """Reserve a storage location for a robot that is to stand there; ignore other waypoints.
+        """Reserve a waypoint for a robot that is to stand there, if it is a storage location.
 
         Raises
         ------
@@ -136,8 +136,9 @@ class Storage:
         Parameters
         ----------
         rest
-            Waypoint at which the robot's current route ends. The robot also keeps the place to
-            which it has been sent, even if its route is not planned yet, and the place of its task.
+            Waypoint at which the robot's current route ends. The robot keeps it, the place of its
+            task, and the place to which it has been sent, even if no route to that place is planned
+            yet.
         """
         goal = robot.task.place if robot.task is not None else -1
         left = [place for place in robot.places if place not in (robot.waypoint, rest, goal)]

@@ -163,7 +163,7 @@ class PickTask(StationTask):
 
     @property
     def can_pick(self) -> bool:
-        """Whether the order of a pick has a slot at the station, not just a place in its pool."""
+        """Whether any pick is for an order with a slot at the station, not just one in its pool."""
         return any(pick.line.order.station >= 0 for pick in self.picks)
 
 

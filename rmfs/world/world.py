@@ -40,7 +40,7 @@ class World(OrderOperations):
     # --- bundles --------------------------------------------------------------------------------
 
     def promise(self, bundle: Bundle, pod: int) -> None:
-        """Reserve room on a pod for a bundle (the choice of RPS, not yet released)."""
+        """Reserve room on the pod that RPS has chosen for a bundle, which is not released yet."""
         if bundle.pod >= 0:
             raise ValueError(f"bundle {bundle.index} has pod {bundle.pod} already")
         self.inventory.promise(pod, bundle.space)
@@ -63,7 +63,7 @@ class World(OrderOperations):
         Returns
         -------
         bool
-            Whether the bundle is now assigned, that is, RPS has released the choice of its pod.
+            Whether the bundle is now assigned, that is, whether RPS has already released it.
         """
         target = self._replenishment_station(station)
         if bundle.station >= 0:
@@ -88,7 +88,7 @@ class World(OrderOperations):
     def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
         """Start the task of bringing a pod to a pick station.
 
-        Of the open requests of orders at the station, all that the pod can serve are bound to it.
+        All open requests of the station's open orders that the pod can serve are bound to the pod.
         """
         task = PickTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
@@ -139,7 +139,7 @@ class World(OrderOperations):
         return bound
 
     def give_back(self, task: PickTask) -> int:
-        """Reopen the requests that a task has bound for orders without a slot; return how many."""
+        """Reopen those requests of a task whose orders have no slot yet; return how many."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)
@@ -157,7 +157,7 @@ class World(OrderOperations):
         return task
 
     def extend_replenish(self, task: ReplenishTask) -> int:
-        """Add the bundles that wait at the station for the pod of a task; return their number."""
+        """Add to a task the bundles that wait at its station for its pod; return their number."""
         bundles = self._replenishment_station(task.station).take(task.pod)
         task.bundles.extend(bundles)
         return len(bundles)

@@ -27,7 +27,7 @@ class Buffer:
         self._wanted = False
 
     def is_over(self, wanted: bool = True) -> bool:
-        """Return whether to ask now; if it is too early, `next_event_s` is the time to ask.
+        """Return whether to ask now; a question wanted too early is due at `next_event_s`.
 
         Parameters
         ----------

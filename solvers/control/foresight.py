@@ -1,4 +1,4 @@
-"""Forecast of visits to pods, from stock, popularity and backlog."""
+"""Forecast of the visits of pods to pick stations, from stock, popularity and backlog."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _PRIOR_H = 0.1
 
 
 class Foresight:
-    """Forecasts visits to pods; results are cached, since the whole stock is evaluated.
+    """Forecasts the visits of pods to pick stations; a forecast is kept for `kept_s`.
 
     Units needed within the horizon are those ordered and not yet picked, and those of new orders.
     New orders are expected to ask for as many units per hour as have been picked per hour so far,
@@ -68,7 +68,7 @@ class Foresight:
 
     @property
     def visits_per_h(self) -> NDArray[np.float64]:
-        """Expected visits to each pod, shape (P,), in 1/h."""
+        """Expected visits of each pod to pick stations, shape (P,), in 1/h."""
         now_s = self._view.now_s
         if self._rate_per_h is None or now_s >= self._found_s + self._kept_s:
             inventory = self._view.inventory

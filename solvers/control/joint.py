@@ -42,7 +42,10 @@ class JointAllocation(TaskAllocation[P]):
         self._rest = RestPlaces(view, rest, self.draw)
 
     def is_modelled(self, decision: Any) -> bool:
-        """Whether the model makes such decisions: to assign orders, or to fetch pods for picks."""
+        """Whether the model makes decisions of this kind.
+
+        It assigns orders to pick stations, and has pods fetched for picks.
+        """
         if isinstance(decision, BringForPicks):
             return decision.robot.pod < 0
         return isinstance(decision, AssignOrder | AssignLines)

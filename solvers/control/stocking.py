@@ -93,14 +93,14 @@ class StockingParameters(SearchParameters):
 
 
 class StockingControl(ReplenishmentPodSelection[StockingParameters]):
-    """Decides jointly which bundles are stored in which pods and where; ROA must be `dummy`.
+    """Decides jointly in which pods and at which stations bundles are stored; ROA must be `dummy`.
 
-    The value of a bundle is the robot time that its units will save by raising the pile-on. It is
-    high if its SKU is in demand and scarce, and higher in a pod with SKUs that are ordered together
-    with it. This is weighed against the trip of the pod to a station with room, which counts once
-    for all its bundles; a pod that is brought to a station anyway takes bundles for free. The
-    optimiser is asked when bundles wait and a station has room, at most once per `buffer_s`; if it
-    fails, the greedy rule decides.
+    The value of a bundle is the robot time that its units will save by raising the pile-on. This
+    value is high if the bundle's SKU is in demand and scarce, and higher in a pod with SKUs that
+    are ordered together with the bundle's SKU. It is weighed against the pod's trip to a station
+    with room; the trip counts once for all bundles of the pod, and is free if the pod is brought to
+    that station anyway. The optimiser is asked when bundles wait and a station has room, at most
+    once per `buffer_s`; if it fails, the greedy rule decides.
     """
 
     parameters_model = StockingParameters
@@ -122,7 +122,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Told]:
-        """Ask if bundles wait, a station has room for them, and the buffer time is over."""
+        """Ask the optimiser when bundles wait, a station has room, and the buffer time is over."""
         if self._buffer.is_over(not self.in_flight and self._is_possible()):
             self._buffer.begin(again=True)
             yield self._question()

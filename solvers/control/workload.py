@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def excess_s(view: View, stations: Sequence[PickStation]) -> NDArray[np.float64]:
-    """Return each station's work minus the least work of all stations, shape (S,), in s.
+    """Return by how much each station's work exceeds that of the least busy one, shape (S,), in s.
 
-    Work is the unpicked units of orders at the station, in seconds of its current picker. Inactive
-    stations are excluded from the comparison.
+    The work of a station is the time that its current picker needs for the unpicked units of its
+    orders. The least busy station is determined among the active ones.
     """
     work_s = np.array([_work_s(view, station) for station in stations])
     active = np.array([station.active for station in stations], np.bool_)

@@ -40,7 +40,7 @@ def bounds(
     guard_s: float | None = None,
     search: bool = True,
 ) -> Iterator[tuple[str, float]]:
-    """Yield bounds with the names of their methods; infinite bounds are left out.
+    """Yield the name of each method with its bound; infinite bounds are left out.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def bounds(
     where
         What error messages call the question, such as the path of its file. Default: its name.
     guard_s
-        Wall time after which the relaxation and the search are given up, in s. Default: none.
+        Wall time after which the relaxation, or the search, is given up, in s. Default: none.
     search
         Whether the exact search is run as well. Default: yes.
     """
@@ -86,7 +86,7 @@ def best(
     guard_s: float | None = None,
     search: bool = True,
 ) -> tuple[str, float]:
-    """Return the best bound and the name of its method; nan and an empty name if there is none.
+    """Return the name of the method with the best bound, and this bound; without any, "" and nan.
 
     Parameters
     ----------

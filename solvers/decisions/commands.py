@@ -108,7 +108,10 @@ def bound(
     files: Files,
     work: Annotated[float, typer.Option(min=0.0, help=WORK)] = 1.0,
 ) -> None:
-    """Prove bounds by Lagrangian prices, relaxation and search; the last line states the best."""
+    """Prove bounds by Lagrangian prices, relaxation and search.
+
+    The last line about each question states its best bound.
+    """
     from rmfs.solvers.decisions.bounding import bounds
 
     for path in expanded(files):

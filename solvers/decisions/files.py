@@ -182,7 +182,7 @@ def read_solution(decision: Decision, path: Path) -> Found:
 
 
 def question_named(path: Path) -> str:
-    """Return the name of the question that a solution file is an answer to.
+    """Return the name of the question that a solution file answers.
 
     Raises
     ------

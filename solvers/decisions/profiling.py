@@ -33,7 +33,7 @@ UNLIMITED = frozenset(
 
 
 def limits(method: str, most: float) -> list[float]:
-    """Return limits of work that double, up to `most`.
+    """Return limits of work, each twice the one before, up to `most`.
 
     Parameters
     ----------

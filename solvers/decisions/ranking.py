@@ -44,10 +44,10 @@ def with_gaps(table: pd.DataFrame, best: Mapping[str, float] | None = None) -> p
 
 
 def integrals(table: pd.DataFrame) -> pd.DataFrame:
-    """Return the primal integral of every run over wall time and over work.
+    """Return primal integrals over wall time and over work for each question, method and seed.
 
-    The integral over time ends with the longest run on the question by any method; that over work
-    ends at the method's own largest limit, as units differ.
+    The integral over time ends at the duration of the longest run on the question by any method;
+    that over work ends at the method's own largest limit, as methods count work in different units.
 
     Parameters
     ----------

@@ -39,19 +39,19 @@ class QuestionListener(Observer):
 
     @abstractmethod
     def take(self, decision: Decision) -> None:
-        """Handle a finished question."""
+        """Handle a converted question."""
 
     def optimiser_asked(self, call: Call) -> None:
         """Remember the question until its answer arrives."""
         self._open[call.number] = call
 
     def optimiser_answered(self, call: Call) -> None:
-        """Convert the question and its answer, and pass them on."""
+        """Convert the question and its answer, and pass them to `take`."""
         self._open.pop(call.number, None)
         self._told(call)
 
     def run_ended(self, time_s: float) -> None:
-        """Pass on the questions whose answers had not taken effect when the run ended."""
+        """Convert the questions whose answers had not taken effect by then; pass them to `take`."""
         for call in self._open.values():
             self._told(call)
         self._open.clear()

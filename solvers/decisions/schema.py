@@ -42,12 +42,12 @@ class Field:
     Attributes
     ----------
     name
-        Its name; a dot separates the name of a part, as in `weights.travel`.
+        Its name; a field of a part is named PART.NAME, as in `weights.travel`.
     kind
         Kind of its entries.
     shape
-        One letter per dimension; empty for a single value. For `lists`, the letter of the
-        dimension that counts them.
+        One letter per dimension; empty for a single value. For the kind `lists`, one letter, which
+        stands for the number of lists.
     optional
         Whether it may be omitted.
     meaning
@@ -73,7 +73,8 @@ class Schema:
     data, values
         Fields of a question, and of an answer.
     derived
-        Letters of dimensions that no field of the question has.
+        By letter, functions that return the sizes of dimensions that the shapes of the fields may
+        not show.
     maximise
         Whether the objective is maximised.
     """
@@ -220,7 +221,7 @@ pod_station   | whole | P | station of a pod, or -1
             """
 travel_s | cost | P L | travel time of a pod to a location, s
 access_s | real | L   | travel time of a later visit from a location, there and back, s
-visits   | real | P   | expected visits of a pod before it is moved again
+visits   | real | P   | expected visits of a pod to stations from its new location
 """
         ),
         fields_of("place | whole | P | location of each pod"),
@@ -245,7 +246,7 @@ visit_s        | real | I J | robot time of a visit to a pod of a class in a zon
 rate_per_h     | real | I   | visits per pod of a class, 1/h
 pods           | real | I   | number of pods of a class
 places         | real | J   | storage locations of a zone
-congestion_s_h | real | J   | delay of each visit per hourly visit to the same zone, s h
+congestion_s_h | real | J   | delay of a visit to a zone for each visit per hour to it, s h
 """
         ),
         fields_of(
@@ -277,7 +278,7 @@ full       | real  |     | level that counts as full
 least      | real  |     | level below which no robot should fall
 short_s    | real  |     | cost of falling below `least`, s per share of the capacity
 idle       | real  |     | cost of time away of a robot not needed, as a share of that of one needed
-curve      | real  |     | energy is worth (1 + curve) x its mean if empty, (1 - curve) x if full
+curve      | real  |     | value of energy / its mean: 1 + curve if empty, 1 - curve if full
 """
         ),
         fields_of(

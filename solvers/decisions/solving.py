@@ -77,8 +77,9 @@ def solve(
     decision
         The question.
     method
-        One of the family's methods, or `asked`. Default: `asked` if a shipped controller asked the
-        question and no other option is given, else the family's default.
+        One of the family's methods, or `asked`: solve as in the run. Default: `asked` if a shipped
+        controller asked the question, and no `work`, `seed` or `start` is given; otherwise the
+        family's default.
     work
         Limit of work in the unit of the method. Default: none.
     seed

@@ -64,7 +64,7 @@ def integers(
     value
         The array. Floats are accepted if they are whole; booleans become 0 and 1.
     shape
-        Expected shape; None accepts any length of that dimension.
+        Expected shape, with None for a dimension of any length.
     low, high
         Smallest and largest value allowed (both included). Default: no limit.
 
@@ -105,7 +105,7 @@ def reals(
     value
         The array.
     shape
-        Expected shape; None accepts any length of that dimension.
+        Expected shape, with None for a dimension of any length.
     low, high
         Smallest and largest value allowed (both included). Default: no limit.
 
@@ -144,7 +144,7 @@ def costs(
     value
         The array.
     shape
-        Expected shape; None accepts any length of that dimension.
+        Expected shape, with None for a dimension of any length.
     low
         Smallest value allowed. Default: no limit.
 
@@ -178,7 +178,7 @@ def flags(field: str, value: ArrayLike, shape: Sequence[int | None]) -> NDArray[
     value
         The array.
     shape
-        Expected shape; None accepts any length of that dimension.
+        Expected shape, with None for a dimension of any length.
 
     Returns
     -------

@@ -14,7 +14,7 @@ V = TypeVar("V")
 
 
 class Method(Protocol[D_contra, V]):
-    """A solution method: the signature of `solve` in every method's module."""
+    """The signature of `solve` in the module of each solution method."""
 
     def __call__(
         self, data: D_contra, limits: Limits = ..., *, seed: int = ..., start: V | None = ...

@@ -97,7 +97,7 @@ class LinearProgram:
 
     @cached_property
     def matrix(self) -> csr_array:
-        """A as a SciPy array."""
+        """The matrix A as a SciPy array."""
         return csr_array(
             (self.coefficient, self.column, self.row_start), shape=(self.rows, self.columns)
         )
@@ -180,8 +180,8 @@ class ProgramBuilder:
         count
             Number of rows in the block.
         entries
-            Triples (row within the block, column, coefficient) that broadcast against each other.
-            Entries in the same position add up.
+            Triples of arrays (row within the block, column, coefficient); the three arrays of a
+            triple are broadcast to one shape. Entries in the same position add up.
         lower, upper
             Bounds of each row, or one for all rows. Default: none.
         """

@@ -170,7 +170,7 @@ class Solution(Generic[V_co]):
     def gap(self) -> float:
         """Relative gap between objective and bound, ``|objective - bound| / |objective|``.
 
-        It is inf if unknown, and 0 if the bound exceeds the objective by rounding.
+        It is inf if unknown, and 0 if rounding puts the bound beyond the objective.
         """
         if not self.found or math.isinf(self.bound):
             return math.inf
@@ -220,7 +220,7 @@ def solution_of_rule(
     values
         The heuristic's solution; None if it found none, or only an infeasible one.
     objective
-        Value of the model's objective function.
+        The model's objective function.
     bound
         A proven lower bound; +inf if it proves infeasibility.
     work
@@ -257,7 +257,7 @@ def solution_of_optimum(
     values
         Optimal values; None: infeasible.
     objective
-        Value of the model's objective function.
+        The model's objective function.
     bound
         Proven lower bound.
     backend

@@ -39,19 +39,20 @@ HEAD = """\
 This page lists the numbers that we claim and the commands that reproduce them. The *number* is the
 mean over seeds, with the half width of its 95 % confidence interval if there is one; it is read
 from the *file*, a table in `results/published`. If a claim compares one thing *against* another,
-the number is the first minus the second. The *input hash* identifies the design: its arms, its
-seeds and the content of all inputs. The provenance file beside the table contains the full hash,
-the runs and the version of the code.
+the number is the first minus the second, or, with the unit %, this difference in percent of the
+second. The *input hash* identifies the design: its arms, its seeds and the content of all inputs.
+The provenance file beside the table contains the full hash, the runs and the version of the code.
 
 Figures 5a and 5b and section 4 are those of Merschformann, Xie, Li (2018). If a file name contains
 `-reference`, the layout is RAWSim-O's own, and `DIR` is a folder with the files of RAWSim-O
-([papers](papers.md)). With *RAWSim-O's planner and time steps*, paths are planned by FAR, and on
-average robots wait as long for the next step of the simulation as in RAWSim-O. SEQU and M1G are the
-sequential rules and the joint model of Jiao et al. (2025); *planning by search* plans several
-visits of each station ahead ([joint optimisation](joint-optimisation.md)). *What the stations can
-do* is the number of units that the pick stations could pick if they never waited. *Targets* are our
-own. The [glossary](glossary.md) explains the other terms; *small*, *default* and *large site* are
-the shipped layouts of these names.
+([papers](papers.md)). In RAWSim-O, a robot waits for the next time step of the simulation before
+every move, lift and set-down. With *RAWSim-O's planner and time steps*, paths are planned by FAR
+(flow annotation replanning), and the mean of this wait is added to the times of turning and
+lifting. SEQU and M1G are the sequential rules and the joint model of Jiao et al. (2025); *planning
+by search* plans several visits of each station ahead ([joint optimisation](joint-optimisation.md)).
+*What the stations can do* is the number of units that the pick stations could pick if they never
+waited. *Targets* are our own. The [glossary](glossary.md) explains the other terms; *small*,
+*default* and *large site* are the shipped layouts of these names.
 
 | claim | number | command | input hash | file |
 |---|---|---|---|---|

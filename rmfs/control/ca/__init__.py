@@ -18,11 +18,12 @@ P = TypeVar("P", bound=Parameters)
 
 
 class ChargeAssignment(Controller[P]):
-    """Sends robots without a pod to energy stations, and decides when they leave.
+    """Sends robots without a pod to energy stations, and can make them leave chargers early.
 
-    It decides before TA, about the robots of `view.asking` and `view.resting`, and only in runs
-    whose robots have batteries (`view.batteries`). Independently of the rule, the simulation sends
-    a robot to an energy station if its charge may not suffice for another task and the trip there.
+    Energy stations are chargers and swap stations. CA decides before TA, and only in runs whose
+    robots have batteries (`view.batteries`). It can send the robots of `view.asking` and
+    `view.resting`. Independently of the rule, the simulation sends a robot to an energy station if
+    the robot's charge may not suffice for another task and the trip to the station after it.
     """
 
     problem = Problem.CA
@@ -30,7 +31,7 @@ class ChargeAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield decisions that send robots to charge or make them leave a plug-in place."""
+        """Yield decisions that send robots to energy stations or make them leave chargers."""
 
     def target_share(self) -> float:
         """Return the level (share of capacity) up to which a robot sent by the simulation charges.

@@ -55,7 +55,7 @@ P = TypeVar("P", bound=PlaceParameters)
 
 
 class ByLevel(ChargeAssignment[P]):
-    """Sends robots to charge one by one, those with the lowest level first."""
+    """Sends robots to charge in the order of their levels, the lowest first."""
 
     @abstractmethod
     def wanted_share(self, robot: Robot, share: float) -> float:

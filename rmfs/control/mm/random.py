@@ -39,7 +39,7 @@ class RandomParameters(Parameters):
 
 
 class RandomExchange(MethodManagement[RandomParameters]):
-    """Installs, after each period, an alternative drawn from a list, all with equal probability.
+    """Installs, after each period, an alternative drawn from a list with equal probabilities.
 
     If the drawn alternative is already installed, its rules start anew.
     """
@@ -52,7 +52,7 @@ class RandomExchange(MethodManagement[RandomParameters]):
         self._periods = 1
 
     def decide(self) -> Iterator[Exchange]:
-        """Yield the exchanges of one alternative for each period that has passed."""
+        """Yield exchanges to one alternative for each period that has ended since the last call."""
         while self.next_event_s() <= self.view.now_s:
             self._periods += 1
             alternatives = self.parameters.alternatives
@@ -70,8 +70,8 @@ class RandomExchange(MethodManagement[RandomParameters]):
         Raises
         ------
         InputError
-            If an alternative cannot be combined with them, or contains a rule that is a dummy or
-            decides further problems.
+            If an alternative cannot be combined with them, or contains a rule that decides several
+            problems, or a dummy, which leaves its problem to another rule.
         """
         given = choices[Problem.MM].parameters
         assert isinstance(given, RandomParameters)

@@ -72,8 +72,8 @@ class Contest:
     def claimed(self) -> NDArray[np.int32]:
         """Return how many units of each SKU are needed by orders ahead of the contest, shape (K,).
 
-        These orders have a slot at the station or, if the contest is for the pool, are in the pool
-        already. Only units that are not yet bound to a pod count.
+        Ahead are the orders with a slot at the station and, if the contest is for the pool, also
+        those already in the pool. Only units that are not yet bound to a pod count.
         """
         claimed: NDArray[np.int32] = self.view.need[self.station.index]
         if self.for_pool:
@@ -109,7 +109,7 @@ class Contest:
         """Return which orders are completed by a pod at the station or on its way there, (N,).
 
         The pod must have all units that the order still needs, in addition to those that orders
-        with a slot need; and no units of another pod may be bound to the order.
+        with a slot need; and no unit of the order may be bound to another pod.
         """
         spare = self.view.inventory.available[:, pod][self.sku]
         spare = spare - self.view.need[self.station.index][self.sku]

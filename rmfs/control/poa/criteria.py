@@ -63,7 +63,7 @@ class DueSoon(Parameters):
     """An order counts as due soon if it is due within this many seconds, or already late."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return 1 for orders that are due soon, else 0."""
+        """Return 1 for orders that are late or due soon, else 0."""
         view = contest.view
         return view.orders.due_s[contest.rows] <= view.now_s + self.within_s
 
@@ -79,7 +79,7 @@ class Weight(Parameters):
 
 
 class FirstWave(Parameters):
-    """Prefers orders of the first wave: late orders, and orders due together with the next one."""
+    """Prefers orders of the first wave: late orders, the order due next, and those due with it."""
 
     criterion: Literal["wave"] = "wave"
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
@@ -119,7 +119,7 @@ class Completable(Parameters):
     to another pod (`nearest-pod`), or all pods together (`all-pods`)."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return 1 for orders that the pod or pods complete, else 0."""
+        """Return 1 for orders that can be completed as `by` requires, else 0."""
         if self.by == "all-pods":
             return contest.completed_by_all()
         pods, _ = contest.inbound()
@@ -127,12 +127,13 @@ class Completable(Parameters):
 
 
 class InboundMatches(Parameters):
-    """Prefers orders with the most SKUs on pods on their way to the station; near pods count more.
+    """Prefers orders with the most SKUs on inbound pods; near pods count more.
 
-    An order is assumed to take its units from the nearest pods that can spare them. It scores one
-    point for each pair of a pod and a SKU taken from this pod. If the number of units taken times
-    the distance of the pod in m is at most `near_unit_metres`, the pair instead scores the number
-    of pods that are considered, minus the number of nearer ones.
+    Inbound pods are at the station or on their way there. An order is assumed to take its units
+    from the nearest of them that can spare any. For each SKU taken from a pod, the order scores one
+    point or, if the pod counts as near, the number of inbound pods minus the number of those nearer
+    than this pod. A pod counts as near if the number of units of the SKU taken from it, times its
+    distance in m, is at most `near_unit_metres`.
     """
 
     criterion: Literal["inbound-matches"] = "inbound-matches"
@@ -140,7 +141,7 @@ class InboundMatches(Parameters):
     """A pod counts as near if the units taken from it times its distance in m are at most this."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return the sum of the points of each order."""
+        """Return the points of each order."""
         pods, metres = contest.inbound()
         if not pods:
             return np.zeros(len(contest), np.int64)
@@ -165,15 +166,16 @@ class InboundMatches(Parameters):
 
 
 class Related(Parameters):
-    """Prefers orders with the largest share of lines whose SKU other orders contain, too.
+    """Prefers orders with the largest share of lines for SKUs that are also in other orders.
 
-    The other orders are those in the pool or at the station that the order is to join.
+    The other orders are those in the station's pool when orders compete for a place in the pool,
+    and those with a slot at the station when orders compete for a slot.
     """
 
     criterion: Literal["related"] = "related"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return the share of an order's lines with a SKU that another order contains, too.
+        """Return, for each order, the share of its lines for SKUs that are also in other orders.
 
         Only lines with units not yet bound to a pod count. The other orders are those in the pool
         if the contest is for the pool, and otherwise those with a slot.

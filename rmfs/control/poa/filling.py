@@ -97,6 +97,6 @@ class Filling(PickOrderAssignment[P]):
         return self.view.orders.servable(self.view.inventory.free_stock).nonzero()[0]
 
     def oldest_order(self) -> Order | None:
-        """Find the order that arrived first among those that stock can serve; None if none can."""
+        """Find the oldest of the orders that stock can serve; None if stock can serve none."""
         orders, rows = self.view.orders, self.servable_rows()
         return orders.at_row[rows[orders.index[rows].argmin()]] if len(rows) else None

@@ -38,9 +38,10 @@ class Foresight(Filling[ForesightParameters]):
     """Assigns the pair of a station and an order with the highest score, then the next such pair.
 
     Ties are broken by the secondary score, then in favour of the station with the most free slots,
-    the station with the lowest number, and the order that arrived first. Stock is spare if orders
-    already at the station do not need it. For the additional points of `depletion` and `surplus`,
-    all available units of a pod count, even those that other orders need.
+    the station with the lowest number, and the order that arrived first. In the scores
+    (`ForesightParameters.score`), stock is spare if orders already at the station do not need it.
+    For the additional points of the scores `depletion` and `surplus`, however, all available units
+    of a pod count, even those that other orders need.
     """
 
     parameters_model = ForesightParameters

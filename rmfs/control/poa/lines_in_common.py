@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class LinesInCommon(BestPair[PairParameters]):
-    """Groups orders for the same SKUs at a station, by the best pair of order and station.
+    """Groups orders for the same SKUs at a station; the best pair of order and station comes first.
 
     The score of a pair is the sum, over the lines of the order, of the number of orders at the
     station with a line for the same SKU, whether picked or not. The pair with the highest score is

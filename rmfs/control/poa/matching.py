@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def line_matches(view: View, station: int) -> NDArray[np.int32]:
-    """Return for how many units of each order line inbound pods have spare stock, shape (B, L).
+    """Return how many units of each order line can come from inbound pods, shape (B, L).
 
-    Inbound pods are at the station or on their way there. Their spare stock is what they have
+    Inbound pods are at the station or on their way there. They can supply what they have
     available in addition to the units that orders at the station still need from pods.
     """
     orders = view.orders
@@ -28,8 +28,8 @@ def line_matches(view: View, station: int) -> NDArray[np.int32]:
 
 
 def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
-    """Return, per station, for how many units of each order inbound pods have spare stock, (S, B).
+    """Return how many units of each order can come from the inbound pods of each station, (S, B).
 
-    `line_matches` explains which stock is spare.
+    `line_matches` explains which units count.
     """
     return np.stack([np.einsum("bl->b", line_matches(view, station.index)) for station in stations])

@@ -88,8 +88,8 @@ class RandomOrder(OrderRule):
 class FirstCome(OrderRule):
     """Fills free slots with orders in the sequence of their arrival.
 
-    Orders that stock cannot serve are skipped. Source: rules "Default" with first come, first
-    served, and "Random", of RAWSim-O.
+    Orders that stock cannot serve are skipped. Source: rule "Random" of RAWSim-O, and its
+    rule "Default" with first come, first served.
     """
 
     def choose_order(self) -> Order | None:
@@ -225,8 +225,9 @@ class FrequencyAge(OrderRule):
 
     The order with the highest product of age and frequency comes first. The age of the oldest of
     the B orders in the backlog is 1, and each later order is younger by 1/B. The frequency of an
-    order is the mean, over its lines, of all units ordered of the SKU, also before the run. Ties go
-    to the order that arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
+    order is the mean, over its lines, of the number of units of the line's SKU that have been
+    ordered so far, including before the run. Ties go to the order that arrived first. Source: rule
+    "Default" of RAWSim-O with frequency and age.
     """
 
     def __init__(

@@ -29,8 +29,8 @@ class PickerLoad(Filling[PickerLoadParameters]):
     Orders are taken by arrival; those that stock cannot serve are skipped. An order goes to the
     station whose picker, in the present state, needs the least time for the units still to be
     picked there, including those of this order. The state is the picker's speed, learning and
-    fatigue. Stations without a picker come last. In scenarios without pickers, the time of a unit
-    is that of the layout. Ties go to the station with the lowest number.
+    fatigue. Stations without a picker come last. In scenarios without pickers, the time per unit is
+    the one that the layout gives for the station. Ties go to the station with the lowest number.
     """
 
     parameters_model = PickerLoadParameters

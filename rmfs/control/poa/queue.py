@@ -53,7 +53,7 @@ class QueueParameters(Parameters):
 
 
 class Queue(PickOrderAssignment[QueueParameters]):
-    """Assigns orders in two steps: first to the pool of a station, later to one of its slots.
+    """Assigns orders in two stages: first to the pool of a station, later to one of its slots.
 
     1. Pools are filled with orders that stock can serve: the best pair of a station and an order,
     then the next. PPS may choose pods for the orders of a pool, and bind them to these pods, before
@@ -64,10 +64,10 @@ class Queue(PickOrderAssignment[QueueParameters]):
     takes an order of its pool that stock can serve, until no station can take another.
 
     These steps are repeated until nothing changes. Only active stations have a pool. Units that
-    other orders of a station need do not count as available for an order. Ties that the criteria
-    leave go to the order that arrived first, then to the station with the lowest number. The rule
-    is also called whenever a pod reaches the head of a queue, so that the orders for which the pod
-    was fetched can get slots.
+    a station's present orders need do not count as available for further orders. Ties that the
+    criteria leave go to the order that arrived first, then to the station with the lowest number.
+    The rule is also called whenever a pod reaches the head of a queue, so that the orders for which
+    the pod was fetched can get slots.
     """
 
     parameters_model = QueueParameters

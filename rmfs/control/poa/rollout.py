@@ -52,7 +52,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
                 yield first
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best decision if it is still valid; if time has passed, decide further."""
+        """Yield the best decision if still valid; if trials took simulated time, decide again."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide()

@@ -33,8 +33,8 @@ class WaveParameters(PairParameters):
 class Wave(BestPair[WaveParameters]):
     """Fills free slots wave by wave, and within a wave by pod match.
 
-    A wave consists of the orders that are due together, as for one truck. From the first wave with
-    an order that stock can serve, the rule assigns the pair of order and station with the most
+    A wave consists of the orders that are due together, as for one truck. The rule takes the first
+    wave with an order that stock can serve, and assigns the pair of order and station with the most
     units on pods at the station or on their way there, as POA `pod-match` does. When no order of
     the wave can be assigned any more, the next wave begins. Ties are broken by the tie-breaker,
     then by arrival, then by station number.

@@ -23,7 +23,7 @@ P = TypeVar("P", bound=Parameters)
 
 
 class PathPlanning(Controller[P]):
-    """Selects a planner of the traffic core, which gets the parameters of the controller.
+    """Selects a planner of the traffic core and passes the controller's parameters to it.
 
     Attributes
     ----------

@@ -17,7 +17,7 @@ class BcpParameters(RollingParameters):
 
 
 class Bcp(PathPlanning[BcpParameters]):
-    """BCP: plans each robot's quickest path by itself; conflicts make their waypoints costlier."""
+    """BCP: plans quickest paths; where two conflict, the waypoint gets costlier for one robot."""
 
     parameters_model = BcpParameters
     planner = "bcp"

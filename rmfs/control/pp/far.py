@@ -27,7 +27,7 @@ class FarParameters(Parameters):
 
 
 class Far(PathPlanning[FarParameters]):
-    """FAR: drives the next straight run of a path as far as it is free, and evades if blocked."""
+    """FAR: moves robots along the free part of their next straight run; blocked ones evade."""
 
     parameters_model = FarParameters
     planner = "far"

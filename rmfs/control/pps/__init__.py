@@ -62,15 +62,18 @@ P = TypeVar("P", bound=LateBinding)
 class PodSelection(Controller[P]):
     """Chooses pods for robots that TA sends to work for a station.
 
-    TA asks which pod a robot should fetch and bring to a station, or to which station a pod that
-    has been served should go next. The simulation then binds the requests (units that orders need)
-    that the pod can serve there.
+    TA asks which pod a robot should fetch and bring to a station, or to which station a carried pod
+    should go next. The simulation then binds the requests (units that orders need) that the pod can
+    serve there.
     """
 
     problem = Problem.PPS
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Yield questions to an optimiser; called only after the events in `subscriptions`."""
+        """Yield questions to an optimiser.
+
+        Called only after the events in `subscriptions`, and at the times given by `next_event_s`.
+        """
         return iter(())
 
     @abstractmethod

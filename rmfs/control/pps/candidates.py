@@ -43,7 +43,7 @@ class Candidates:
         return len(self.pods)
 
     def narrowed(self, to: NDArray[np.intp]) -> Candidates:
-        """Return the candidates at the given positions."""
+        """Return only the candidates with the given indices in `pods`."""
         return Candidates(self.view, self.robot, self.station, self.pods[to])
 
     def waypoints(self) -> NDArray[np.int32]:
@@ -51,9 +51,9 @@ class Candidates:
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """Return, for each pod, how many of robot and station (0 to 2) are on another tier, (C,).
+        """Return 0 to 2 for each pod: 1 if the robot is on another tier, plus 1 if the station is.
 
-        If the warehouse has a single tier, the result is the number 0.
+        The shape is (C,); but if the warehouse has a single tier, the result is the number 0.
         """
         travel = self.view.travel
         if travel.tiers == 1:
@@ -72,9 +72,9 @@ class Completed(NamedTuple):
     orders
         The O orders with open requests; those assigned to the station come first.
     assigned
-        Number of orders assigned to the station; the others are queued there.
+        How many of `orders` are assigned to the station; the others are queued there.
     flags
-        Whether a pod has all units of an order's open requests, shape (O, C).
+        Whether an order is completed by a pod (`PickCandidates.completed`), shape (O, C).
     """
 
     orders: Sequence[Order]
@@ -134,7 +134,7 @@ class PickCandidates(Candidates):
         self._completed: Completed | None = None
 
     def narrowed(self, to: NDArray[np.intp]) -> PickCandidates:
-        """Return the candidates at the given positions."""
+        """Return only the candidates with the given indices in `pods`."""
         kept = PickCandidates(
             self.view,
             self.robot,
@@ -158,7 +158,8 @@ class PickCandidates(Candidates):
     def queued_units(self) -> NDArray[np.int64]:
         """Return how many open requests of queued orders each pod can serve, shape (C,).
 
-        Units that assigned orders need from the pod are not available to queued ones.
+        With `assigned-and-completable`, only orders that the pod completes count (`completed`).
+        Otherwise, units that assigned orders need from the pod are not available to queued orders.
         """
         if self.requests == "assigned-and-completable":
             done = self.completed()

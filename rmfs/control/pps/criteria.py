@@ -110,7 +110,7 @@ class PickDemand(PodCriterion):
         view.trackers.get(DemandOnPods, "unbound")
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Return the sum over SKUs of units on the pod, limited by open requests for the SKU."""
+        """Return the sum over SKUs of min(units on the pod, open requests for the SKU)."""
         units = candidates.view.trackers.get(DemandOnPods, "unbound").units()
         scores: Scores = units[candidates.pods]
         return scores
@@ -132,13 +132,13 @@ class Completeable(PodCriterion):
 
 
 class PickWorkAmount(PodCriterion):
-    """Prefers the pod with the most work at the station, minus a cost of travel ("pile-on").
+    """Prefers the pod with the most work at the station, minus a cost of travel.
 
     The work is the total value of the requests that the pod can serve. `metric` selects the value
     of a request: 1, the time that its order has been at the station, or the lateness of its order;
     time and lateness are divided by the number of the order's open requests
-    (`rmfs.control.pps.requests.value_of`). In a controllers file, the plain names `pile-on`, `age`
-    and `lateness` stand for this criterion with the respective metric.
+    (`rmfs.control.pps.requests.value_of`). In a controllers file, the names `pile-on`, `age` and
+    `lateness` stand for this criterion with the metric `picks`, `age` or `lateness`, respectively.
     """
 
     criterion: Literal["work-amount"] = "work-amount"
@@ -229,7 +229,7 @@ class WaveWork(PodCriterion):
 
 
 class BundleWorkAmount(PodCriterion):
-    """Prefers the pod for which the most, or the longest waiting, bundles are at the station."""
+    """Prefers the pod with the most bundles, or the longest total waiting time, at the station."""
 
     criterion: Literal["work-amount"] = "work-amount"
     age: bool = False
@@ -266,7 +266,7 @@ class BundleDemand(PodCriterion):
     criterion: Literal["demand"] = "demand"
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Return the sum over bundles of their units, limited by the open requests for the SKU."""
+        """Return the sum over waiting bundles of min(units, open requests for the SKU)."""
         view = candidates.view
         station = candidates.station.number
         waiting = view.replenishment_stations[station].waiting
@@ -327,10 +327,10 @@ _SHORT: dict[str, dict[str, Any]] = {
 
 
 def by_name(value: Any) -> Any:
-    """Return the table of a criterion given by its name alone; its parameters have their defaults.
+    """Replace the name of a criterion by a table that selects it with default parameters.
 
-    The names `pile-on`, `age` and `lateness` stand for `work-amount` with the respective metric.
-    Other values are returned unchanged.
+    The names `pile-on`, `age` and `lateness`, alone or in a table, are replaced by `work-amount`
+    with the metric `picks`, `age` or `lateness`, respectively. Other values are returned unchanged.
     """
     given = {"criterion": value} if isinstance(value, str) else value
     if isinstance(given, dict) and given.get("criterion") in _SHORT:

@@ -65,7 +65,7 @@ class LexicographicParameters(LateBinding):
         NearestNextStation(),
         RandomNextStation(),
     )
-    """Criteria, in order of priority, for choosing the next station of a pod that has been served,
+    """Criteria, in order of priority, for choosing the next station of a carried pod,
     if TA lets it continue to other stations: `random`, `nearest`, `work-amount` (or `pile-on`,
     `age`, `lateness`)."""
 

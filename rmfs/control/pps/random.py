@@ -22,7 +22,7 @@ class RandomPodParameters(LateBinding):
 
 
 class RandomPod(PodSelection[RandomPodParameters]):
-    """Draws a pod with work at the station, or the next station of a pod that has been served."""
+    """Draws a pod with work at the station, or the next station of a carried pod."""
 
     parameters_model = RandomPodParameters
 

@@ -66,7 +66,7 @@ class MostWork(Parameters):
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Return the value of the requests that the pod can serve, or of the bundles for it."""
+        """Return the value of the pod's servable requests, or the number or age of its bundles."""
         return np.array([self._work(view, robot.pod, station) for station in stations], float)
 
     def _work(self, view: View, pod: int, station: int) -> float:

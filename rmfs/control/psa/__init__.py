@@ -31,7 +31,10 @@ class PodStorageAssignment(Controller[P]):
     problem = Problem.PSA
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Yield questions to an optimiser; called only after the events in `subscriptions`."""
+        """Yield questions to an optimiser.
+
+        Called only after the events in `subscriptions`, and at the times given by `next_event_s`.
+        """
         return iter(())
 
     @abstractmethod

@@ -28,11 +28,11 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
     """Stores useful pods in the cache of the nearest pick station, and other pods outside caches.
 
     The station is the one nearest to the pod by Euclidean distance, even if the pod comes from a
-    replenishment station. The pod deserves a place in this station's cache if the weighted mean of
-    two shares is above a threshold: the share of the cache that is free, and the share of the pods
-    in the cache that have a lower score than this pod.
+    replenishment station. Two shares decide whether the pod deserves a place in this station's
+    cache: the share of the cache that is free, and the share of the pods in the cache that have a
+    lower score than this pod. The weighted mean of the two must be above a threshold.
 
-    A pod that deserves it is stored in this cache; if the cache is full, outside all caches; if all
+    A pod that deserves a place is stored in this cache; if that is full, outside all caches; if all
     locations outside are occupied, too, in another cache. Any other pod is stored outside all
     caches or, if all locations outside are occupied, in any cache. Among the empty storage
     locations of the area chosen, the one nearest to the station is taken; ties go to the waypoint

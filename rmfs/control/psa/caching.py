@@ -38,7 +38,7 @@ class CacheParameters(ScoreWeights, ZoneParameters):
 
 
 class Caching:
-    """Rates pods for places in caches.
+    """Decides which pods deserve a place in a cache.
 
     Attributes
     ----------

@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 class PlaceDistances:
-    """Distances of a loaded robot to the L storage locations, cached for each starting waypoint.
+    """Distances between waypoints and the L storage locations, for a loaded robot.
 
     Parameters
     ----------
     metric
-        Measure of distance (`rmfs.control.travel.Metric`).
+        Measure of distance (`rmfs.control.travel.Metric`): `time` in s, the others in m.
     """
 
     def __init__(self, view: View, metric: Metric) -> None:
@@ -29,7 +29,7 @@ class PlaceDistances:
         self._kept: dict[int, NDArray[np.float64]] = {}
 
     def away(self, waypoint: int) -> NDArray[np.float64]:
-        """Return distances from a waypoint to all locations, shape (L,), in m, or s for `time`."""
+        """Return the distances from a waypoint to all locations, shape (L,)."""
         distances = self._kept.get(waypoint)
         if distances is None:
             everywhere = self._travel.distances_from(waypoint, self._metric, keep=False)
@@ -37,7 +37,7 @@ class PlaceDistances:
         return distances
 
     def to_nearest(self, waypoints: list[int]) -> NDArray[np.float64]:
-        """Return distances from all locations to the nearest of some waypoints, in m or s, (L,)."""
+        """Return the distance from each location to the nearest given waypoint, shape (L,)."""
         least = np.full(len(self._places), np.inf)
         for waypoint in waypoints:
             to = self._travel.distances_to(waypoint, self._metric)[self._places]

@@ -53,10 +53,10 @@ class Ranking:
     """Ranks pods by score, and finds places of the corresponding rank.
 
     The P pods are sorted by score, the highest first (ties by number), and the places by
-    prominence, the most prominent first; both are counted from 0. Pod r in this sequence belongs on
-    place floor(r x (P + b) / P), or on the last place if there are fewer places. Here b is the
-    share `place_buffer` of the number of places, rounded down. The rank of that place is the pod's
-    target; places of equal prominence share a rank.
+    prominence, the most prominent first; positions are counted from 0. The pod at position r
+    belongs on the place at position floor(r x (P + b) / P), or on the last place if there are fewer
+    places. Here b is the share `place_buffer` of the number of places, rounded down. The rank of
+    the place is the pod's target; places of equal prominence share a rank.
     """
 
     def __init__(self, view: View, parameters: RankParameters) -> None:

@@ -1,4 +1,4 @@
-"""PSA station-based: chooses the empty storage location nearest to any station of a kind."""
+"""PSA station-based: chooses the empty storage location nearest to a station."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class StationBasedParameters(Parameters):
 
 
 class StationBased(PodStorageAssignment[StationBasedParameters]):
-    """Chooses the empty storage location nearest to any station of a kind, wherever the pod is.
+    """Chooses the empty storage location nearest to any pick (or any replenishment) station.
 
-    Ties go to the waypoint with the lowest number.
+    The position of the pod has no effect. Ties go to the waypoint with the lowest number.
     """
 
     parameters_model = StationBasedParameters

@@ -89,8 +89,9 @@ Q = TypeVar("Q", bound=Pauses)
 class Pausing(Repositioning[Q]):
     """Base class of rules that pause after moves and after unsuccessful searches.
 
-    A move is followed by a pause for its robot, an unsuccessful search by a pause for all robots.
-    If a pause prevented a search for a robot, TA is asked for decisions again when the pause ends.
+    A move is followed by a pause for the robot on whose behalf TA asked; an unsuccessful search is
+    followed by a pause for all robots. After an unsuccessful search, or if a pause has prevented a
+    search, TA is asked for decisions again when the pause ends.
     """
 
     def __init__(self, parameters: Q, view: View, rng: np.random.Generator) -> None:
@@ -123,7 +124,7 @@ class Pausing(Repositioning[Q]):
         return False
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s when a pause that prevented a search ends, or inf."""
+        """Return the simulated time in s at which TA is asked again as a pause ends, or inf."""
         if self._again_s <= self.view.now_s:
             self._again_s = inf
         return self._again_s

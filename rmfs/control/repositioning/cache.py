@@ -67,7 +67,7 @@ class Cache(Pausing[CacheMoveParameters]):
     zones or, if the pod is almost empty, to the one nearest to a replenishment station.
 
     Moves into a cache come before moves out of a cache. Lengths of moves are Manhattan distances;
-    distances from a station are travel times. Remaining ties go to the pod with the lowest number,
+    distances to a station are travel times. Remaining ties go to the pod with the lowest number,
     then to the waypoint with the lowest number.
     """
 

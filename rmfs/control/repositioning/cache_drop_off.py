@@ -33,10 +33,11 @@ class CacheDropOffParameters(CacheParameters, Pauses):
 class CacheDropOff(Pausing[CacheDropOffParameters]):
     """Clears drop-off zones, then fills or thins out the caches.
 
-    Stations are considered in order of the absolute difference between the number of occupied
-    storage locations in their cache and its target, the largest first. If the drop-off zone of a
-    station holds pods, the one with the highest score is moved: into the cache of the station if it
-    deserves a place there (as in PSA `cache`) and there is room, and otherwise outside all zones.
+    Stations are considered in order of the absolute difference between the actual and the target
+    number of occupied storage locations in their cache, the largest first. If the drop-off zone of
+    a station holds pods, the one with the highest score is moved: into the cache of the station if
+    it deserves a place there (as in PSA `cache`) and there is room, and otherwise outside all
+    zones.
 
     If no pod in a drop-off zone can be moved, the caches are considered. If a cache has too few
     pods, the pod outside all zones that has the highest score is moved in, provided that it

@@ -20,9 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentOrderAssignment(Controller[P]):
     """Chooses stations for the bundles of `view.bundles.without_station`.
 
-    The space of the bundle is reserved at its station immediately. `view.bundles.released` contains
-    the bundles for which RPS has chosen a pod and released the choice. TA can send a robot for a
-    bundle when both its pod and its station have been chosen.
+    The space of a bundle is reserved at its station immediately. `view.bundles.released` contains,
+    by pod, the bundles that RPS has promised to the pod and then released, as long as they have no
+    station. TA can send a robot for a bundle that has been released and has a station.
     """
 
     problem = Problem.ROA

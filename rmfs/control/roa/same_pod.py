@@ -49,16 +49,17 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
     A batch consists of the bundles that RPS has released for one pod and that have no station yet.
     If they are sent together, the pod makes only one trip. Batches are considered in the order of
     their first release. The parameter `station` determines the choice of the station; by default,
-    the one nearest to the pod's current position in a straight line is chosen, even if the pod is
-    being carried. Ties go to the station with the lowest number.
+    the one with the shortest straight-line distance from the pod's current position is chosen, even
+    if the pod is being carried. Ties go to the station with the lowest number.
 
     An empty station that is smaller than the batch may be chosen, too. It then gets as many bundles
     of the batch as fit.
 
     With `break_batches`, bundles are sent one by one. A bundle goes to the station to which the
     previous bundle for its pod was sent. If that station has no room or is switched off, the bundle
-    goes to the station with room that is nearest to it. If there was no previous bundle, the
-    parameter `station` decides. Bundles that fit nowhere wait, without blocking later bundles.
+    goes to the nearest other station, seen from there, that has room. If there was no previous
+    bundle, the parameter `station` decides. Bundles that fit nowhere wait, without blocking later
+    bundles.
     """
 
     parameters_model = SamePodParameters

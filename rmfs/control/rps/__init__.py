@@ -1,4 +1,4 @@
-"""Replenishment pod selection (RPS): which pod a bundle goes to, and when to release the choice."""
+"""Replenishment pod selection (RPS): the pod a bundle goes to, and when the bundle is released."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentPodSelection(Controller[P]):
     """Chooses pods for the bundles of `view.bundles.without_pod`.
 
-    Space for the bundle is reserved on the pod immediately. ROA and TA may act on the choice only
-    after it has been released. Until then, further bundles can be promised to the same pod, so that
-    one trip serves all of them (`view.bundles.unreleased`).
+    Promising a bundle to a pod reserves space for it on the pod immediately. ROA and TA may act on
+    the promise only after the bundle has been released. Until then, further bundles can be promised
+    to the pod, so that one trip serves all of them (`view.bundles.unreleased`).
     """
 
     problem = Problem.RPS

@@ -27,10 +27,11 @@ P = TypeVar("P", bound=Parameters)
 
 
 class Buffered(ReplenishmentPodSelection[P]):
-    """Promises bundles one by one and releases a pod's bundles together.
+    """Promises bundles to pods one by one, and releases the bundles of a pod together.
 
-    Bundles that a former rule promised but did not release are released in the same way. The rule
-    also decides when a time-out expires.
+    They are released when enough of the pod's capacity is used or promised (`threshold`), or a
+    certain time after the last promise to the pod (`timeout_s`). This also holds for bundles that a
+    former rule promised but did not release.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -43,11 +44,11 @@ class Buffered(ReplenishmentPodSelection[P]):
 
     @abstractmethod
     def threshold(self, pod: int) -> float:
-        """Return the used or promised share of capacity at which to release a pod's bundles."""
+        """Return the share of capacity that must be used or promised to release a pod's bundles."""
 
     @abstractmethod
     def timeout_s(self, pod: int) -> float:
-        """Return the time in s after the last promise to a pod at which to release its bundles."""
+        """Return how long after the last promise to a pod its bundles are released, in s."""
 
     @property
     @abstractmethod
@@ -173,7 +174,7 @@ class Sticky(EvenlyBuffered[S]):
         self._last = -1
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose the last pod or, if this is not possible, another pod; -1 if there is none."""
+        """Choose the same pod as last time or, if impossible, another; -1 if no pod has room."""
         inventory = self.view.inventory
         last = self._last
         if last >= 0 and inventory.load[last] + bundle.space <= inventory.capacity[last]:
@@ -188,6 +189,6 @@ class Sticky(EvenlyBuffered[S]):
         """Choose a pod with room for the bundle; -1 if there is none."""
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Forget the last pod when it is served at a replenishment station."""
+        """Stop choosing the same pod again once a replenishment station serves it."""
         if subject.pod == self._last:
             self._last = -1

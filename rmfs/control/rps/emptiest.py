@@ -19,6 +19,6 @@ class Emptiest(Sticky[StickyParameters]):
     parameters_model = StickyParameters
 
     def choose_anew(self, bundle: Bundle) -> int:
-        """Choose the pod with the lowest share among those with room; -1 if there is none."""
+        """Choose the emptiest of the pods with room; -1 if there is none."""
         inventory = self.view.inventory
         return self.best(bundle, inventory.load / inventory.capacity)

@@ -16,9 +16,9 @@ class LeastDemand(Sticky[StickyParameters]):
     """Chooses the pod with the least demand for its SKUs: the pod that pickers will miss least.
 
     The demand for a SKU is the number of its units that are ordered and not yet picked, in the
-    backlog and at stations. The demand for a pod is the sum of the demands for the SKUs on it,
-    however many units it has. All pods are candidates, wherever they are. Ties go to the pod with
-    the lowest number.
+    backlog and at stations. The demand for a pod is the sum of the demands for the SKUs on it; how
+    many units of them it holds does not matter. All pods are candidates, wherever they are. Ties go
+    to the pod with the lowest number.
     """
 
     parameters_model = StickyParameters

@@ -47,9 +47,9 @@ class Turnover(Buffered[TurnoverPodParameters]):
     Classes are formed by units ordered (`rmfs.control.trackers.turnover`); the fastest pods belong
     to the class of the storage locations nearest to pick stations. If no pod of the class has room,
     the next slower class is tried, then the next faster one, then the class after the next slower
-    one, and so on. Within a class, the last pod is chosen again until it has no room or a
-    replenishment station serves it. Then the emptiest pod is chosen (ties go to the lowest number),
-    or a random pod. All pods are candidates, wherever they are.
+    one, and so on. Within a class, the same pod is chosen until it has no room or a replenishment
+    station serves it. Then the emptiest pod is chosen (ties go to the lowest number), or a random
+    pod. All pods are candidates, wherever they are.
     """
 
     parameters_model = TurnoverPodParameters
@@ -92,7 +92,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
         return min(self.parameters.buffer_timeouts_s)
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Forget the last pod of a class when it is served at a replenishment station."""
+        """Stop choosing the same pod again once a replenishment station serves it."""
         self._last = [-1 if pod == subject.pod else pod for pod in self._last]
 
     def _among(self, pods: np.ndarray[Any, np.dtype[np.intp]]) -> int:
@@ -103,7 +103,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
 
 
 def outward(middle: int, count: int) -> list[int]:
-    """List the numbers from 0 to `count` - 1 outward from `middle`, higher before lower ones."""
+    """List the numbers from 0 to `count` - 1 by distance from `middle`; in a tie, higher first."""
     steps = [middle]
     for away in range(1, count):
         steps += [number for number in (middle + away, middle - away) if 0 <= number < count]

@@ -44,13 +44,13 @@ class BacklogThresholdParameters(Parameters):
 class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
     """Switches stations on when much work waits, and off when the active ones have little work.
 
-    All stations are on at the start. Pick and replenishment stations are considered separately,
-    each kind after its own pause. If the backlog is above its threshold, and the share of slots (or
-    space) in use at the active stations is not below its limit, the first station that is off is
-    switched on. If the backlog is not above its threshold, and the share in use is below its limit,
-    the last station that is on is switched off, unless it is the only one. Otherwise nothing
-    changes. Stations are ordered by activation number in the layout, then by number. Bundles held
-    back by RPS count as backlog.
+    All stations are on at the start. Pick and replenishment stations are considered separately: a
+    station is switched only if the last switch of a station of its kind was at least `pause_s` ago.
+    If the backlog is above its threshold, and the share of slots (or space) in use at the active
+    stations is not below its limit, the first station that is off is switched on. If the backlog is
+    not above its threshold, and the share in use is below its limit, the last station that is on is
+    switched off, unless it is the only one. Otherwise nothing changes. Stations are ordered by
+    activation number in the layout, then by number. Bundles held back by RPS count as backlog.
     """
 
     parameters_model = BacklogThresholdParameters

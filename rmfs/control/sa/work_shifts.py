@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Shift(Parameters):
-    """A time in the loop (by default a day) from which all stations are on, or off."""
+    """A time from which all stations are on, or off; it recurs every loop (by default a day)."""
 
     at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
     """Seconds since the start of the loop."""

@@ -43,7 +43,7 @@ class Consult(Protocol):
         ...
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask repositioning which pod a robot without a pod should move, and where; or None."""
+        """Ask repositioning which pod an empty robot should move, and where; None if no pod."""
         ...
 
 

@@ -69,8 +69,8 @@ def reassign(
     Returns
     -------
     list of int
-        The new station of each robot, or -1. Stations with more robots than their goal lose the
-        robots with the highest numbers.
+        The new station of each robot, or -1. A station that still has more robots than its goal
+        loses those with the highest numbers.
     """
     result = list(station_of)
     surplus = {station: -goal for station, goal in goals.items()}

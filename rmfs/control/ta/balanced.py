@@ -60,7 +60,8 @@ class Balanced(StationTeams[BalancedParameters]):
     distance, the nearest pair first. If no station had work, robots are redistributed as soon as
     there is work.
 
-    The limit also applies when a robot takes work; the robot itself then does not count.
+    A robot takes work of a station only if fewer than `robots_per_station` other robots work for
+    this station.
     """
 
     parameters_model = BalancedParameters

@@ -44,17 +44,19 @@ class BruteForce(Solo[BruteForceParameters]):
 
     The pods are the available ones and the one that the robot carries, if any. The pair with the
     least estimated time until service is chosen. The estimate is the sum of three terms: the time
-    of the straight trip from robot to pod at top speed; the time to lift the pod, and first to set
-    down a carried one; and the longer of the unhindered trip to the station and the expected wait
-    there. For the carried pod, only the last term counts. Ties go to the carried pod, then to the
-    station and the pod with the lowest number. All robots look for picks until there are none, then
-    for bundles until there are none, and so on.
+    of the straight trip from robot to pod at top speed; the time to lift the pod (and to set
+    down the carried one); and the longer of the unhindered trip to the station and the expected
+    wait there. For the carried pod, only the last term counts. Ties go to the carried pod, then to
+    the station and the pod with the lowest number. All robots look for picks until there are none,
+    then for bundles until there are none, and so on.
 
-    If the best pod is not the carried one, the carried pod is parked at the storage location with
-    the least time to drive there plus the straight trip on to the other pod. The robot then fetches
-    the other pod; if another robot has taken it meanwhile, the robot searches again. If there is no
-    work, a carried pod is parked at the nearest empty location. The rule chooses pods and storage
-    locations itself, so PPS and PSA must be `dummy`; bundles go into the pods chosen by RPS.
+    If the best pod is not the carried one, the robot first parks the carried pod, then fetches the
+    best one. It parks at the empty storage location on the quickest way to the best pod: the sum of
+    the time to drive to the location and the time of a straight trip from there to the best pod is
+    least. If another robot has taken the best pod meanwhile, the robot searches again. If there is
+    no work, a carried pod is parked at the nearest empty location. The rule chooses pods and
+    storage locations itself, so PPS and PSA must be `dummy`; bundles go into the pods chosen by
+    RPS.
     """
 
     parameters_model = BruteForceParameters
@@ -67,7 +69,7 @@ class BruteForce(Solo[BruteForceParameters]):
         self._picks = True
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the best task; if another pod is carried, yield the task of parking it first."""
+        """Yield the best task; if the robot carries another pod, yield its parking first."""
         view = self.view
         job = self._best(robot, consult)
         if job is None:

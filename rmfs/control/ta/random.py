@@ -81,7 +81,11 @@ class RandomTasks(Solo[RandomTasksParameters]):
         yield self.work_for(robot, consult) or self.to_rest(robot)
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Draw one of the available pods with work of the robot's kind, then a station."""
+        """Draw an available pod with work, then a station where it has work; None if there is none.
+
+        The work is of the kind that the robot does at present (picking or replenishment) or, if
+        there is none and `other_kind` allows it, of the other kind.
+        """
         for picks in self._kinds(robot):
             stations = [s.index for s in self._stations(picks) if self.view.has_open_work(s.index)]
             useful = np.zeros((len(stations), len(self.view.storage.is_at_hand)), np.bool_)

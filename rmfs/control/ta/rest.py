@@ -18,10 +18,10 @@ RestRule = Literal["middle", "nearest", "random"]
 
 
 class RestPlaces:
-    """Storage locations for resting: beneath unclaimed pods or, if there are none, empty ones.
+    """Chooses where robots rest: beneath unclaimed pods or, if there are none, at empty locations.
 
-    An idle robot beneath a pod is not in the way, since other robots without a pod pass beneath
-    stored pods. If the pod is needed, the robot beneath it gets the task or is sent away.
+    A robot beneath a stored pod is not in the way of robots that carry pods, since these cannot
+    pass there anyway. If the pod is needed, the robot beneath it gets the task or is sent away.
 
     Parameters
     ----------

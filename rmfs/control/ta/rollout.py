@@ -37,13 +37,13 @@ class TaskRolloutParameters(RolloutParameters):
 
 
 class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
-    """Tries out tasks by simulation: other stations, other pods, other storage locations.
+    """Simulates alternatives to the base rule's task: other stations, pods or storage locations.
 
     The base rule, with PPS and PSA, makes a default decision. It is compared in trials with others:
     work for other stations, other pods for the pick station, or other storage locations for the
     pod, as far as `over` allows. The decision that did best is made, or the default decision if the
-    advantage over it is not certain enough (`certainty`). The pacing determines the simulated time
-    that trials take; meanwhile, no robot gets a task.
+    advantage over it is not certain enough (`certainty`). The pacing determines how much simulated
+    time the computation takes; meanwhile, no robot gets a task.
     """
 
     parameters_model = TaskRolloutParameters

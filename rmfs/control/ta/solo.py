@@ -37,7 +37,11 @@ P = TypeVar("P", bound=SoloParameters)
 
 
 class Solo(TaskAllocation[P]):
-    """Finds tasks robot by robot; for robots at rest, only after changes at the stations."""
+    """Finds tasks robot by robot.
+
+    If no work is found for a robot at rest, robots at rest get no further search until work is
+    added or a pod becomes available.
+    """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
@@ -46,7 +50,7 @@ class Solo(TaskAllocation[P]):
 
     @abstractmethod
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield a task for a robot that needs one, and possibly tasks prepared to follow."""
+        """Yield a task for a robot that needs one, optionally followed by `Prepare`."""
 
     @abstractmethod
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:

@@ -48,8 +48,9 @@ class StationTeams(TaskAllocation[P]):
     their stations. A robot without work rests, and gets work as soon as there is any.
 
     Every `period_s`, if the result of `stations_now` has changed, robots are reassigned to stations
-    below their goal (`goals`), the nearest pair of robot and station first. If no station should
-    have robots, this happens as soon as one should.
+    below their goal (`goals`), the nearest pair of robot and station first. While no station should
+    have robots, reassignment does not wait for the end of the period: it takes place as soon as a
+    station should have some.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:

@@ -61,9 +61,9 @@ def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
 def near_by(
     view: View, robot: Robot, radius_m: float, among: Iterable[int], consult: Consult
 ) -> list[int]:
-    """Return the stations that a robot's pod can serve on its tier, within a radius in m.
+    """Return those of `among` that a robot's pod can serve on the robot's tier, within a radius.
 
-    Distances from the robot are Euclidean.
+    Distances from the robot are Euclidean, in m.
     """
     stations = [view.stations[index] for index in among]
     if not stations:

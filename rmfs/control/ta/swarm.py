@@ -58,15 +58,16 @@ class Swarm(Solo[SwarmParameters]):
     """Lets each robot without a pod draw a station, for which PPS chooses a pod.
 
     A station's stimulus s is max(min(n, `work_limit`) - m, 0) times the station's multiplier. Here
-    n is the number of orders or bundles at the station, and m the number of robots matched with it.
-    A station is drawn with a probability proportional to s^2 / (s^2 + alpha T^2 + beta d^2), where
-    T is half of `work_limit`, rounded down, and d the Manhattan distance in m. Then the multipliers
-    of the drawn station and of stations without stimulus are set to 1, and the others grow.
+    n is the number of orders or bundles at the station, and m the number of robots matched with it:
+    a robot is matched with the station for which it fetches or carries a pod, until it has stored
+    the pod. A station is drawn with a probability proportional to
+    s^2 / (s^2 + alpha T^2 + beta d^2), where T is half of `work_limit`, rounded down, and d the
+    Manhattan distance in m from the robot. Then the multipliers of the drawn station and of
+    stations without stimulus are set to 1, and the others grow.
 
     Let S be the number of stations, and R be `rest_share` times S, rounded. If the number of
     stations without stimulus exceeds R by e, a robot can also draw rest, with the weight
-    e^3 / (S - R)^3. If rest is drawn, no multiplier grows. As long as a robot carries a pod, it
-    is matched with the station that it has drawn.
+    e^3 / (S - R)^3. If rest is drawn, no multiplier grows.
     """
 
     parameters_model = SwarmParameters

@@ -50,7 +50,7 @@ class Trackers:
         """Return a tracker, creating it if necessary.
 
         Controllers and trackers must request their trackers in their constructor. A tracker created
-        later would not be notified of events before the next exchange of a controller.
+        later would be notified of events only after the next exchange of a controller.
 
         Parameters
         ----------

@@ -64,8 +64,8 @@ class PairFrequency(Tracker):
     def orders_with(self, sku: int) -> NDArray[np.int64]:
         """Return, for each SKU, how many orders contain both it and the given SKU, shape (K + 1,).
 
-        The last entry is 0: rows of `Inventory.skus_on` are filled up with K and can thus be used
-        as indices.
+        The last entry, with index K, is 0, so that rows of `Inventory.skus_on`, which are padded
+        with K, can be used as indices.
         """
         counts = np.zeros(len(self.view.skus) + 1, np.int64)
         partners = self._orders.get(sku)

@@ -34,7 +34,7 @@ def demand(view: View, kind: Demand) -> NDArray[np.int64]:
 
 
 class DemandOnPods(Tracker):
-    """For each pod, the sum over SKUs of its units, limited by the demand for the SKU.
+    """The number of units in demand on each pod: of each SKU, at most as many as are in demand.
 
     Changes of stock are counted as they happen. Changes of demand are counted when the sums are
     requested; only SKUs whose demand has changed are processed then.
@@ -76,9 +76,9 @@ class DemandOnPods(Tracker):
 class PodScores(Tracker):
     """Scores of pods: how useful they are now, and how soon they will be needed again.
 
-    *Utility* is the number of units on a pod that are in demand, where demand is all units not yet
-    picked (`DemandOnPods`). *Speed* is the sum, over the units on a pod, of the popularity of their
-    SKU. Both are divided by their maximum over all pods.
+    *Utility* is the number of units on a pod that are in demand, where demand is all units
+    ordered and not yet picked (`DemandOnPods`). *Speed* is the sum, over the units on a pod, of the
+    popularity of their SKU. Both are divided by their maximum over all pods.
     """
 
     hears = DemandOnPods.hears
@@ -102,7 +102,7 @@ class PodScores(Tracker):
             self._speed[subject.pod] += self._weight[subject.sku] * subject.units
 
     def scores(self, utility_weight: float, speed_weight: float) -> NDArray[np.float64]:
-        """Return weighted means of utility and speed, each from 0 to 1, shape (P,).
+        """Return each pod's weighted mean of utility and speed, from 0 to 1, shape (P,).
 
         Parameters
         ----------

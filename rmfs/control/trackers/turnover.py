@@ -56,13 +56,14 @@ class TurnoverClasses(Tracker):
       divided in proportion to the numbers of locations of the classes.
     - SKUs are sorted by units ordered, the most first; ties are broken by number. The weight of a
       SKU is the mean of two shares: its share of all units ordered, and the share of its space per
-      unit in the sum of the spaces per unit of all SKUs. A class takes SKUs until their total
-      weight reaches the share of its pods in the capacity of all pods.
+      unit in the sum of the spaces per unit of all SKUs. A class takes SKUs until the total
+      weight of the SKUs in this and faster classes reaches the share of these classes' pods in the
+      capacity of all pods.
 
     Units are counted since the last classification; the first classification also counts orders
     from before the run. Pods and SKUs are classified when a rule first requests the tracker. They
-    are reclassified on the first access after the period has passed, or the number of orders has
-    been reached. Locations keep their class.
+    are reclassified on the first access after `reallocation_period_s` have passed, or
+    `reallocation_orders` orders have arrived. Locations keep their class.
 
     Attributes
     ----------

@@ -71,7 +71,7 @@ class EmulatedRobot:
         self.base.stop()
 
     def step(self, now_us: int) -> None:
-        """Write the frames that are due and, if the program is running, do one of its steps."""
+        """Send the delayed messages now due and, if the program is running, do one of its steps."""
         if self.wire is not None:
             self.wire.now_us = now_us
             self.wire.pump()
@@ -102,7 +102,7 @@ class Room:
     seed
         Seed of all random draws.
     memory
-        Folder in which the programs save their orders. Default: a temporary folder.
+        Folder in which the robots' programs save their route orders. Default: a temporary folder.
     pace
         Timing of the room. Default: synchronised with the server.
 
@@ -141,7 +141,7 @@ class Room:
         }
 
     def run(self, until_us: int | None = None, each: Callable[[Room], None] | None = None) -> None:
-        """Run the room; time starts when the server is available.
+        """Run the room; if it is synchronised with the server, it first waits for the server.
 
         Parameters
         ----------

@@ -20,7 +20,7 @@ _TURNING_RAD_S = 0.3
 
 @dataclass
 class Truth:
-    """Measures robots on the floor.
+    """Measurements of the robots' true motion on the floor.
 
     Attributes
     ----------

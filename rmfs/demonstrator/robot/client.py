@@ -149,7 +149,7 @@ class Link:
                 self._wire.write(frame)
 
     def wait(self, timeout_s: float) -> None:
-        """Wait until data has arrived or time has run out; this requires a `TcpWire`."""
+        """Wait until data has arrived or time has run out; without a `TcpWire`, do not wait."""
         if isinstance(self._wire, TcpWire):
             select.select([self._wire.fileno()], [], [], timeout_s)
 

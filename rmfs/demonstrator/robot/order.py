@@ -30,16 +30,17 @@ class Order:
     tags, metres
         Tags of the waypoints of the run, and the distance in m of each from the previous one.
     granted
-        Number of these waypoints to which the robot may drive.
+        Number of waypoints of the run to which the robot may drive.
     turned
         Whether the turn is done.
     passed
         Number of waypoints reached.
     since
-        Wheel counters read at the beginning of the turn, or at the last waypoint reached.
+        Wheel counters, read when the order arrived, the turn ended or a waypoint was reached,
+        whichever was last.
     ahead_m
-        How far, in m, the robot was past the last waypoint reached, at the time when `since` was
-        read; negative if it was before the waypoint.
+        How far, in m, the robot was past the last waypoint reached when `since` was read; negative
+        if it was still short of the waypoint, since a tag is detected before its centre.
     """
 
     number: int
@@ -86,7 +87,7 @@ class Order:
             raise ProtocolError(f"no order: {error!r}") from None
 
     def cut(self, upto: int) -> None:
-        """Shorten the order to `upto` waypoints, or to those already reached if these are more."""
+        """Keep only the first `upto` waypoints, and all that have been reached already."""
         upto = max(upto, self.passed)
         del self.tags[upto:], self.metres[upto:]
 
@@ -96,7 +97,7 @@ class Order:
         Parameters
         ----------
         rolled_m
-            Distance in m rolled since the reading `since`.
+            Distance in m that the robot has rolled since the wheel counters `since` were read.
         """
         granted = min(self.granted, len(self.tags))
         return sum(self.metres[self.passed : granted]) - rolled_m - self.ahead_m
@@ -104,7 +105,7 @@ class Order:
 
 @dataclass
 class Memory:
-    """Persistent memory of a robot's program: the present order, and the last completed one."""
+    """What a robot's program stores in a file: its order, and the number of the last one done."""
 
     path: Path | None = None
     order: Order | None = None

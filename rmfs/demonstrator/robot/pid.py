@@ -12,11 +12,10 @@ class Pid:
     Attributes
     ----------
     proportional, integral, derivative
-        Weights of the error, of its integral over time and of its derivative. Their unit is that of
-        the output per unit of the error, multiplied by 1/s for `integral` and by s for
-        `derivative`.
+        Weights of the error, of its integral over time and of its derivative. If the error is in m
+        and the output in rad/s, their units are rad/(m s), rad/(m s^2) and rad/m.
     limit
-        Limit of the absolute output; while it is exceeded, the integral is not updated.
+        Maximum absolute output; while the output would be greater, the integral is not updated.
     """
 
     proportional: float
@@ -37,5 +36,5 @@ class Pid:
         return max(-self.limit, min(self.limit, wanted))
 
     def reset(self) -> None:
-        """Reset the integral and the last error, as at the beginning of a straight run."""
+        """Forget the integral and the last error; called before each straight run."""
         self._sum, self._last = 0.0, None

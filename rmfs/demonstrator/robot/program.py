@@ -22,7 +22,7 @@ class LineSensor(Protocol):
     """A sensor that sees the line on the floor ahead."""
 
     def offset_m(self) -> float | None:
-        """Return how far the line is to the left of the centre, in m; None without a line."""
+        """Return how far left of the robot's centre the line is, in m; None if no line is seen."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Settings:
     turn_rad_s
         Angular speed of turns on the spot.
     creep_m_s
-        Lowest speed, used for the last millimetres and when searching for a tag.
+        Lowest speed, used for the last millimetres before a stop and when searching for a tag.
     tag_ahead_m
         Distance before the centre of a tag at which the reader detects it.
     overshoot_m
@@ -47,8 +47,8 @@ class Settings:
         Length of the stretch in which a missed tag is searched for (it ends `overshoot_m` past the
         expected position of the tag), and maximum number of searches.
     steering
-        Weights and limit of the PID controller (`Pid`), which turns the offset in m into an angular
-        speed in rad/s.
+        Weights and limit of the PID controller (`Pid`), which turns the offset of the line in m
+        into an angular speed in rad/s.
     """
 
     speed_m_s: float = 0.21
@@ -83,7 +83,7 @@ class Program:
     settings
         Settings of the robot's motion.
     memory
-        Persistent memory of the order, in case the program is killed.
+        File that keeps the order in case the program is killed. Default: nothing is kept.
     """
 
     def __init__(

@@ -63,7 +63,7 @@ class RoomClock:
         self._expected: dict[str, int] = {}
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Read messages until the room has reached a time and its robots' bytes have arrived.
+        """Wait until the room has reached a time and all that its robots have sent has arrived.
 
         Raises
         ------

@@ -93,7 +93,7 @@ class Demonstration:
 
 
 def expected(robots: dict[str, int], *, is_emulated: bool) -> list[str]:
-    """Return the names of all clients that may connect: the robots, and an emulated room."""
+    """Return the names of all clients that may connect: the robots, and the room if emulated."""
     return [*robots, ROOM] if is_emulated else [*robots]
 
 

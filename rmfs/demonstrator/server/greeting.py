@@ -20,7 +20,7 @@ from rmfs.demonstrator.robot.protocol import (
 class Guest(NamedTuple):
     """A client that has identified itself.
 
-    It has a name, the key of its session, and the bytes that followed its hello.
+    It has a name, the key of its session, and the bytes received after its first message.
     """
 
     name: str
@@ -29,7 +29,9 @@ class Guest(NamedTuple):
 
 
 class Greeting:
-    """The handshake of one connection: a welcome, and a hello that is valid for this welcome only.
+    """The handshake of a connection: the server's welcome, and the client's hello in reply to it.
+
+    A hello is valid for one welcome only.
 
     Parameters
     ----------

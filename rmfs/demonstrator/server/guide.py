@@ -87,8 +87,8 @@ class Guide:
         silent
             Robots that are silent although they have a session.
         regroups
-            Whether plans may be made anew in this tick; if not, plans that are due to be made
-            anew wait for a later tick. Default: True.
+            Whether new plans may be made in this tick; if not, replanning that is due waits for
+            a later tick. Default: True.
 
         Returns
         -------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class GuidedTraffic(Traffic):
-    """The traffic layer of a warehouse with some real robots; a clock sets the simulated time.
+    """The traffic layer of a warehouse with some real robots; simulated time follows a clock.
 
     Parameters
     ----------
@@ -123,9 +123,10 @@ class GuidedTraffic(Traffic):
             ) from error
 
     def end(self) -> None:
-        """End the demonstration: close sessions, and notify an emulated room.
+        """End the demonstration: close all sessions, after notifying an emulated room.
 
-        After a failure, the room waits until the server has been restarted, as robots do.
+        After a failure of the server, the room is not notified: like the robots, it waits until the
+        server has been restarted.
         """
         if not self._failed:
             self._hub.send(ROOM, {"type": "end"})

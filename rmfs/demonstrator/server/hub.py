@@ -97,7 +97,7 @@ class Hub:
 
     @property
     def present(self) -> frozenset[str]:
-        """Names of robots with a session."""
+        """Names of the robots with a session, and of an emulated room that has one."""
         return frozenset(self._sessions)
 
     def silent(self, now_us: int) -> frozenset[str]:

@@ -24,7 +24,7 @@ Heard = tuple[list[tuple[int, "Message"]], frozenset[int]]
 
 
 class Journal:
-    """A file with one line for every tick at which messages were received.
+    """A file with a line for every tick with messages, silent robots, new orders or a failure.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class Journal:
         self._write({"time_us": time_us, "heard": messages, "silent": sorted(silent)})
 
     def note_failure(self, time_us: int, error: str) -> None:
-        """Mark the tick at this time as failed, before any of its orders was sent."""
+        """Mark the tick at this time as failed; none of its orders has been sent."""
         self._write({"time_us": time_us, "failed": error})
 
     def _write(self, entry: dict[str, Any]) -> None:

@@ -27,7 +27,8 @@ class Pursuit:
     number
         Number of the order.
     move
-        The part of the plan that the order carries out. Its times change if the robot is late.
+        The part of the plan that the order carries out, with the times planned when the order was
+        created. If the robot is late, only the times in the plan change.
     heading_before_rad
         Heading of the robot, in rad, before the turn.
     waypoints
@@ -81,7 +82,7 @@ class Pursuit:
         return move.start_us + late_us + math.floor(self.seconds[self.passed] * 1e6)
 
     def pass_waypoint(self, waypoint: int) -> bool:
-        """Record that the robot was seen at a waypoint; return false if this is not on its path."""
+        """Record a waypoint at which the robot was seen; return false if it is not on the run."""
         if waypoint not in self.waypoints:
             return False
         self.turned = True
@@ -104,7 +105,7 @@ class Pursuit:
         return self.waypoints[-1] if self.waypoints else self.move.from_waypoint
 
     def order(self, tags: list[str]) -> Message:
-        """Return the order as a message to the robot, without completed actions.
+        """Return the order as a message to the robot; a completed turn is left out.
 
         Parameters
         ----------

@@ -53,9 +53,9 @@ class RealRobot:
     def heading_at(self, layout: Layout, waypoint: int) -> float:
         """Return the robot's probable heading, in rad, at a waypoint to which it was not sent.
 
-        If this waypoint and the last confirmed one lie on a line along x or y, the heading is the
-        direction from the last confirmed waypoint to this one, as after a wrong turn. Otherwise, it
-        is the heading that the robot has according to its order, as after a push.
+        If a line along x or y joins the last confirmed waypoint to this one, the robot has probably
+        taken a wrong turn: its heading is the direction of this line. Otherwise, it has probably
+        been pushed: its heading is the one according to its order.
         """
         pursuit = self.pursuit
         if pursuit is None:

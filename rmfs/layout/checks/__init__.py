@@ -26,8 +26,9 @@ def check(layout: Layout) -> list[Violation]:
 
     The following is checked: there are robots, pick stations and replenishment stations; every
     storage location, station and elevator can be reached and left, with and without load; the
-    aisles are strongly connected; queue lists are chains; every robot has a place to rest; bodies
-    stay apart; and the conditions W1-W3 of deadlock freedom hold (docs/safety.md).
+    aisles are strongly connected; the places of each queue form a chain; every robot has a place to
+    rest; robots and pods cannot overlap; and the conditions W1-W3 of deadlock freedom hold
+    (docs/safety.md).
     """
     found = [violation for checks in CHECKS for violation in checks(layout)]
     return sorted(found, key=lambda violation: violation.severity != IMPOSSIBLE)

@@ -31,7 +31,10 @@ TO_IT, FROM_IT = "no path leads to it", "no path leads away from it"
 
 
 def connection(layout: Layout) -> Iterator[Violation]:
-    """Yield violations: places of tasks that cannot be reached or left, and stuck robots."""
+    """Yield violations: stuck robots, and places of tasks that cannot be reached or left.
+
+    Places of tasks are storage locations, stations and elevators.
+    """
     lost = np.zeros(layout.waypoints, dtype=np.bool_)
     yield from _empty(layout, lost)
     yield from _loaded(layout, lost)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def occupancy(layout: Layout) -> Iterator[Violation]:
-    """Yield violations concerning the places of pods, robots, stations, waypoints and elevators."""
+    """Yield violations: wrong positions of pods, robots, stations, waypoints or elevators."""
     yield from _pods(layout)
     yield from _robots(layout)
     yield from _stations(layout)

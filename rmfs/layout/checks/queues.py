@@ -3,8 +3,8 @@
 W3 of the deadlock argument requires that a station admits no more robots than its queue has places.
 Traffic grants places one by one and lets all other robots wait where they are, so the number of
 robots does not matter, with one exception: if a queue consists of the station alone, two robots
-that go on to each other's station would wait for each other forever. Robots never go from one
-energy station to another.
+that go on to each other's station would wait for each other forever. Robots never go directly
+from one charger or swap station to another.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ class Queue:
     of_elevator
         Whether an elevator is at its head.
     is_left
-        Whether a robot that leaves the queue never goes on to a similar station, as at energy
-        stations.
+        Whether the station is a charger or swap station; a robot never goes directly from one of
+        these to another.
     """
 
     label: str
@@ -59,7 +59,7 @@ class Queue:
 
 
 def all_queues(layout: Layout) -> list[Queue]:
-    """Return the queue of each station and elevator; if its list is empty, the head alone."""
+    """Return the queues of stations and elevators; a queue with an empty list is its head alone."""
     queues = [
         Queue(
             station_label(layout, s),

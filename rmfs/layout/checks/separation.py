@@ -38,7 +38,8 @@ Positions may be off the grid by an eighth of this share of the spacing."""
 def separation(layout: Layout) -> Iterator[Violation]:
     """Yield violations: waypoints or edges nearer to each other than twice the largest radius.
 
-    Edges are checked only if no two waypoints are too near to each other.
+    Edges are checked only if no two waypoints are too near to each other. Edges with a common end
+    are not compared.
     """
     radii = [kind.radius_m for kind in layout.robot_kinds]
     if layout.pods:

@@ -26,9 +26,9 @@ class Violation:
     Attributes
     ----------
     severity
-        "impossible": some task can never be done, or bodies overlap: the layout is always refused.
-        "not well-formed": a condition W1-W3 of deadlock freedom does not hold: refused unless the
-        user allows it.
+        "impossible": some task can never be done, or robots or pods would overlap; the layout is
+        always refused. "not well-formed": one of the conditions W1-W3 of deadlock freedom does not
+        hold; the layout is refused unless the user allows it.
     element
         The element concerned, by kind, number and place.
     message
@@ -51,7 +51,7 @@ def at(layout: Layout, waypoint: int) -> str:
 
 
 def waypoint_label(layout: Layout, waypoint: int) -> str:
-    """Name a waypoint, as a storage location, a place of a queue, or a plain waypoint."""
+    """Return a name for a waypoint: its kind (such as "queue place"), index and position."""
     if layout.is_storage[waypoint]:
         kind = "storage location"
     elif layout.is_queue[waypoint]:
@@ -62,14 +62,14 @@ def waypoint_label(layout: Layout, waypoint: int) -> str:
 
 
 def station_label(layout: Layout, station: int) -> str:
-    """Name a station by its kind and its number within the kind."""
+    """Return a name for a station: its kind, its number within the kind, and its position."""
     found = layout.stations[station]
     number = sum(other.kind.name == found.kind.name for other in layout.stations[:station])
     return f"{found.kind.name} station {number} ({at(layout, found.waypoint)})"
 
 
 def grouped(severity: Severity, elements: Iterable[str], message: str) -> Iterator[Violation]:
-    """Yield a violation for each of the first elements and one that counts the rest."""
+    """Yield one violation for each of the first `MOST_SHOWN` elements, and one for the rest."""
     names = list(elements)
     for name in names[:MOST_SHOWN]:
         yield Violation(severity, name, message)

@@ -76,7 +76,7 @@ class Drawing:
         A place of a queue leads to the place ahead, and a station to the aisles beside it. The
         entrance of a queue can be reached from aisles only. Storage locations lead to all
         neighbours except queues, since robots without a pod drive beneath pods. A one-way cell
-        leads to aisles only in its direction, and is not entered from the cell ahead.
+        leads to another aisle cell only in its direction; the cell ahead does not lead back to it.
         """
         places = {cell: (stand, rank) for stand in self.stands for rank, cell in
                   enumerate(stand.queue)}  # fmt: skip

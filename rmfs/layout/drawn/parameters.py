@@ -42,8 +42,8 @@ class Equipment(Strict):
 
     pod_share: Annotated[float, Field(ge=0, le=1)] = Field(
         0.85,
-        description="pods per storage location (rounded down); in a picture, only storage "
-        "locations drawn as `x` count",
+        description="share of the storage locations that hold a pod at the start; the number of "
+        "pods is rounded down. In a picture, only storage locations drawn as `x` count",
     )
     pod_radius_m: Radius = _as_generated("pod_radius_m")
     pod_capacity: Positive = _as_generated("pod_capacity")

@@ -67,7 +67,7 @@ def read_picture(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()) ->
     Parameters
     ----------
     overrides
-        (path, value) pairs, applied to the head.
+        Pairs of a key, as a list of its parts, and the value that it gets in the head.
 
     Raises
     ------

@@ -34,7 +34,8 @@ def read_station_map(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()
     Parameters
     ----------
     overrides
-        (path, value) pairs, applied to the file of stations.
+        Pairs of a key, as a list of its parts, and the value that it gets instead of the one in the
+        file of stations.
 
     Raises
     ------

@@ -50,8 +50,8 @@ def build(table: Table, source: str, folder: Path | None = None) -> Layout:
     source
         Name of the file, for messages.
     folder
-        Folder where files with kinds of station are looked for first. Default: the working
-        directory.
+        Folder where Python files that define kinds of station are looked for first. Default: the
+        working directory.
 
     Raises
     ------

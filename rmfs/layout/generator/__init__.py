@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 def generate(parameters: LayoutParameters, folder: Path | None = None) -> Layout:
     """Generate the layout that the parameters describe.
 
-    Storage blocks two places deep lie between horizontal and vertical aisles and are surrounded by
-    a ring road. Each side with stations or elevators adds a hall and a buffer zone with their
-    queues. The layout is determined by the parameters.
+    Storage blocks, each two storage locations deep, are separated by horizontal and vertical aisles
+    and surrounded by a ring road. Each side with stations or elevators adds a hall and a buffer
+    zone with their queues. Equal parameters give equal layouts.
 
     Parameters
     ----------
@@ -31,8 +31,8 @@ def generate(parameters: LayoutParameters, folder: Path | None = None) -> Layout
     Raises
     ------
     InputError
-        If there is no such kind of station, one of its parameters is wrong, or the layout does not
-        fit into memory.
+        If a kind of station does not exist or one of its parameters is wrong, or if the layout does
+        not fit into memory.
     """
     size = extent(parameters)
     tiles = size.rows * size.columns * parameters.tiers

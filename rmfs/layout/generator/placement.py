@@ -27,7 +27,7 @@ def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> 
 def draw_robots(tiles: NDArray[np.int32], count: int, seed: int, tier: int) -> NDArray[np.int32]:
     """Draw road waypoints of a tier, uniformly, without repetition.
 
-    If the number of robots is increased, the robots that were there before keep their waypoints.
+    With the same seed, a greater `count` only adds waypoints to those drawn for a smaller one.
     """
     return _draw(tiles, count, seed, ROBOTS, tier)
 

@@ -35,7 +35,7 @@ class Pocket:
     kind
         Kind of station.
     tile, aisle
-        Where it stands, and the tile of the aisle beside it.
+        Where it stands, and the tile of the aisle or ring road beside it.
     """
 
     kind: str

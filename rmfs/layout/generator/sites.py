@@ -26,8 +26,8 @@ class Site:
     kind
         Kind of station, by name, or `elevator`.
     exit, entrance
-        Where its buffer opens into the hall: tiles along the side, counted from the corner of the
-        ring road at the low end (north or west).
+        Positions along the side at which robots leave and enter its buffer, in tiles from the
+        northern or western end of the ring road on that side.
     """
 
     kind: str

@@ -86,11 +86,14 @@ class _Orders:
 
 
 def check(rows: Rows) -> Chapter:
-    """Check that every order gets exactly its units, between its arrival and its end."""
+    """Check that no order gets too many units, or any before its arrival or after its end.
+
+    Also checks that a completed order has got all its units.
+    """
     orders = _Orders(rows.of_kind(*KINDS))
     orders.follow()
     open_ = [
-        f"order {order} has no units left to pick, but is not completed"
+        f"order {order} has no lines left, but is not completed or cancelled"
         for order, wants in orders.wanted.items()
         if order not in orders.ended and wants.total() == 0
     ]

@@ -23,7 +23,7 @@ class Chapter:
     told
         What was examined, in words.
     faults
-        One line per fault, in order of time; empty if there are none.
+        One line per fault; empty if there are none.
     """
 
     name: str

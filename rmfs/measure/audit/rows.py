@@ -60,12 +60,12 @@ class Rows:
         return self.taken(np.isin(self.kind, kinds))
 
     def tell(self, row: int, what: str) -> str:
-        """Return a line about a faulty event: its time, row and kind, and `what` is wrong."""
+        """Return a line about a faulty event: its time, row, kind and fault (`what`)."""
         kind = KINDS[int(self.kind[row])]
         return f"{self.time_us[row] / 1e6:.6f} s, row {self.number[row]} ({kind}): {what}"
 
     def lines(self, wrong: NDArray[np.bool_], what: str) -> list[str]:
-        """Return a line for each faulty event, by row number."""
+        """Return one line per faulty event, in order of row numbers."""
         rows = np.flatnonzero(wrong)
         return [
             self.tell(int(row), what) for row in rows[np.argsort(self.number[rows], kind="stable")]
@@ -75,12 +75,13 @@ class Rows:
 def running(
     groups: tuple[Integers, ...], change: NDArray[np.float64]
 ) -> tuple[Integers, NDArray[np.float64]]:
-    """Return cumulative sums of changes within groups.
+    """Return the cumulative sums of the changes in each group.
 
     Returns
     -------
     tuple
-        A permutation that sorts by group, and in this order the sum after each change.
+        A permutation that sorts the changes by group, and the sum of the group after each change,
+        sorted in the same way.
     """
     order = np.lexsort(groups[::-1])
     total = np.cumsum(change[order])

@@ -18,9 +18,10 @@ KINDS = (
 
 
 def check(layout: Layout, rows: Rows) -> Chapter:
-    """Check that no pick station has more open orders than slots, or picks for any other order.
+    """Check that no pick station has more open orders than slots.
 
-    Also checks that no order is assigned to a station that is switched off.
+    Also checks that a station picks only for orders that have a slot there, and that no order is
+    assigned to a station that is switched off.
     """
     rows = rows.of_kind(*KINDS)
     slots = {number: one.order_slots for number, one in enumerate(layout.pick_stations)}

@@ -24,7 +24,7 @@ COUNTED = {
 def check(
     rows: Rows, footprint: pd.Series, orders: pd.DataFrame, stations: pd.DataFrame
 ) -> Chapter:
-    """Compare the tables with the events of the measured time."""
+    """Compare figures in the tables with the events."""
     begin_us = round(float(footprint["warmup_s"]) * 1e6)
     measured = rows.taken(rows.time_us >= begin_us)
     faults = []

@@ -46,8 +46,8 @@ def check(
     trace
         The trace's columns by name: arrays of equal length or a pandas frame.
     until_us
-        End of the trace in microseconds; it must cover every robot up to then. Motions that reach
-        it may end later or be cut short. Default: the start of the last motion.
+        End of the trace in microseconds; up to then, the trace must cover every robot. A motion in
+        progress then may be recorded in full or be cut off. Default: the start of the last motion.
     slow
         Periods in which robots are limited to a share of their top speed; outside these periods,
         they are not. Default: periods are not checked, and each straight run is limited to the

@@ -34,7 +34,7 @@ def check(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) -> li
     Parameters
     ----------
     until_us
-        End of the trace: motions that reach it may end later or be cut short.
+        End of the trace; a motion in progress then may be recorded in full or be cut off.
     """
     return [
         *_presence(layout, trace, until_us),
@@ -162,7 +162,7 @@ def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) 
 
 
 def speeds(trace: Trace, limits: Kinematics) -> list[Finding]:
-    """Compare the top speed stated for each straight run with the limit; without speeds, pass."""
+    """Check that the top speed stated for each straight run, if any, is equal to its limit."""
     if trace.top_speed_m_s is None:
         return []
     off = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s - limits.top_speed_m_s, 0.0)

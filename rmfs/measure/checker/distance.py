@@ -84,7 +84,7 @@ def below(power: Floats, limit: Floats) -> NDArray[np.bool_]:
     power
         Coefficients a_j, shape (K, 5).
     limit
-        Limit of each, in the unit of the polynomial (m² here), shape (K,).
+        Limit for each polynomial, in the same unit (m² here), shape (K,).
     """
     violated = np.zeros(len(power), np.bool_)
     which: Index = np.arange(len(power))
@@ -157,8 +157,8 @@ def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floa
     Returns
     -------
     tuple
-        Whether each pair does, shape (K,); and, for pairs that do, time (s) and squared distance
-        (m²) of the closest approach.
+        Whether each pair comes, or may come, closer than the limit, shape (K,); for these pairs,
+        also time (s) and squared distance (m²) of the closest approach.
     """
     begin, end, power = squared_distance(one, other)
     hit = below(power, limit)

@@ -22,7 +22,7 @@ def worst(who: tuple[Index, Index], begin_s: Floats, end_s: Floats, amount: Floa
     Parameters
     ----------
     who
-        The bodies: two numbers per violation.
+        Numbers of the two bodies in each violation: two robots, or a robot and a stored pod.
     begin_s, end_s
         Time interval of each violation, shape (K,).
     amount

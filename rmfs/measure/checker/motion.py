@@ -73,8 +73,8 @@ def lengths(layout: Layout, trace: Trace) -> Floats:
 class Pieces:
     """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
 
-    Of a guided robot (a real one in a demonstration), the trace states only the way, not where on
-    the way it is at which time. Its piece has constant speed and covers the whole way.
+    For a guided robot (a real one in a demonstration), the trace states only the way, not the
+    robot's position on it over time. Its piece has constant speed and covers the whole way.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ class Pieces:
 
 
 def cut(layout: Layout, trace: Trace, limits: Kinematics) -> Pieces:
-    """Divide rows on tiers into pieces, sorted by row; elevator rides have no pieces."""
+    """Divide the rows of a trace into pieces, sorted by row; elevator rides have no pieces."""
     standing = ~trace.is_kind(Motion.RUN, Motion.LIFT_RIDE, Motion.GUIDED)
     parts = [_resting(layout, trace, np.flatnonzero(standing))]
     parts += [_guided(layout, trace, np.flatnonzero(trace.is_guided))]

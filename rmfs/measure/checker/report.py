@@ -55,7 +55,7 @@ class Finding:
     place
         Waypoint nearest to the event, or -1.
     amount
-        Size of the violation, in the unit stated in `MEANING`.
+        Size of the violation, or number of the pod or waypoint concerned, as stated in `MEANING`.
     """
 
     kind: FindingKind
@@ -83,7 +83,8 @@ class CheckReport:
     pieces
         Number of rows of the trace.
     pairs
-        Number of pairs of motions whose distance was bounded in the narrow phase.
+        Number of pairs of motions that were examined for overlaps of two robots, because they are
+        close in time and space.
     """
 
     findings: list[Finding] = field(default_factory=list)

@@ -40,8 +40,8 @@ def check(
     Returns
     -------
     tuple
-        One finding per pair of robots and time interval, and the number of pairs of motions whose
-        distance was bounded.
+        One finding per collision, at its worst moment, and the number of pairs of motions that were
+        examined because they are close in time and space.
     """
     radius = radii(layout, trace, limits)[pieces.row]
     robot = trace.robot[pieces.row]

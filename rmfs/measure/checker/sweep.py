@@ -72,7 +72,7 @@ def close_pairs(
     Yields
     ------
     tuple
-        Indices of the first and second pieces of a batch of pairs, without repetition in a batch.
+        A batch of different pairs: indices of the first pieces, and indices of the second pieces.
     """
     for begin, end in _windows(pieces, int(robot.max(initial=0)) + 1):
         within = (pieces.t0_s < end * SLAB_S) & (pieces.t1_s > begin * SLAB_S)
@@ -103,7 +103,7 @@ def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -
     Parameters
     ----------
     begin, end
-        Range of numbers of slabs, `end` excluded.
+        Numbers of the first slab and of the one after the last.
     """
     first = np.maximum(np.floor(pieces.t0_s / SLAB_S).astype(np.int64), begin)
     last = np.minimum(np.ceil(pieces.t1_s / SLAB_S).astype(np.int64), end)

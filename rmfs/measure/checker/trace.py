@@ -59,8 +59,8 @@ class Trace:
     robot, t0_us, t1_us, kind, from_wp, to_wp, heading0_rad, heading1_rad, pod
         The columns, each of shape (K,).
     top_speed_m_s
-        Top speed of each straight run; None if the trace does not contain it, so that all robots
-        drive at their own top speed.
+        Top speed of each straight run; None if the trace does not contain this column, in which
+        case all robots drive at their own top speed.
     """
 
     robot: NDArray[np.int64]
@@ -91,7 +91,7 @@ class Trace:
 
     @property
     def end_us(self) -> int:
-        """Time up to which every robot must be covered: the start of the last motion.
+        """The start of the last motion: by default, the trace must cover every robot up to then.
 
         A turn and the straight run after it count as one motion.
         """

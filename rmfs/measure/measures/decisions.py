@@ -59,7 +59,7 @@ class Decisions(Measure):
 
 
 class Optimisers(Measure):
-    """Number, optimality gaps, delays and wall times of questions to optimisers."""
+    """Questions to optimisers: their number, optimality gaps, and times until the answers."""
 
     columns = (
         Column("optimiser_calls", INTEGER, "calls", "Questions to optimisers"),
@@ -111,7 +111,7 @@ class Optimisers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return number, optimality gaps, delays, failures and wall times of the questions."""
+        """Return number, failures, optimality gaps, simulated and wall times of the questions."""
         decisions = run.tables["decisions"]
         asked = decisions[decisions["source"] == "optimiser"]
         return {

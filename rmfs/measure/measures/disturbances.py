@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Disturbances(Measure):
-    """Number and length of disturbances."""
+    """Disturbances, and motions that started late."""
 
     columns = (
         Column(
@@ -44,7 +44,7 @@ class Disturbances(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the counts stored at the end of the run."""
+        """Return figures on disturbances, late motions, and plans repaired because of them."""
         counters = run.recorder.counters
         return {
             "disturbances": int(counters["disturbances"]),

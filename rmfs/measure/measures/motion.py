@@ -51,7 +51,7 @@ class Motion(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return distances, number and mean times of trips, and number of lifts, of the fleet."""
+        """Return the fleet's distances, number and mean times of its trips, and number of lifts."""
         motion, trips = run.recorder.motion, run.tables["trips"]
         lasted = trips["end_s"] - trips["start_s"]
         delay = (lasted - trips["unhindered_s"])[trips["kind"] != "to_station"]
@@ -69,7 +69,7 @@ class Motion(Measure):
 
 
 class RobotTime(Measure):
-    """Shares of the robots' time, and their tasks."""
+    """Shares of the robots' time by state, and numbers of tasks."""
 
     columns = (
         Column(
@@ -115,7 +115,7 @@ class RobotTime(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return shares of the fleet's time by task and state, and the number of tasks by kind."""
+        """Return the fleet's busy share, its shares of time by state, and its tasks by kind."""
         robots = run.tables["robots"]
         robot_time = run.layout.robots * run.logs.duration_s
         busy = sum(robots[f"task_{task}_s"].sum() for task in BUSY)

@@ -115,7 +115,7 @@ class Backlog(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return means and final values of orders waiting or open, and counts of arrivals."""
+        """Return numbers of waiting orders (mean, final), open orders (mean) and arrivals."""
         orders, counters = run.logs.orders, run.recorder.counters
         measured = (run.start_s, run.end_s)
         waiting = Steps.between(

@@ -159,7 +159,7 @@ def slots_in_use(totes: pd.DataFrame, *, per_part: bool) -> Steps:
     totes
         The table `totes`.
     per_part
-        Whether each part of an order takes a slot of its own; if not, all its parts share one.
+        Whether each part of an order takes a slot; if not, all parts of an order share one.
     """
     there = totes[totes["arrived_s"].notna()]
     if not per_part:

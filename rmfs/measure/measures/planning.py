@@ -81,5 +81,5 @@ class Safety(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the number of overlaps; None if the trace was not checked."""
+        """Return the number of overlaps of two bodies; None if the trace was not checked."""
         return {"collisions": None if run.report is None else run.report.collisions}

@@ -32,7 +32,7 @@ def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
 
 
 def spread(name: str, values: pd.Series[float]) -> dict[str, Any]:
-    """Return mean, median and quartiles of some times, by column name; nan without any times."""
+    """Return mean, median and quartiles of times, by column name; nan if there are no times."""
     return {
         f"{name}_mean_s": values.mean(),
         f"{name}_median_s": values.median(),

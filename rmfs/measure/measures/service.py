@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Service(Measure):
-    """On-time share and lateness; by priority, see the table `priorities`."""
+    """On-time share and lateness; the table `priorities` gives them for each class of orders."""
 
     columns = (
         Column(
@@ -78,7 +78,7 @@ class Service(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return on-time shares, lateness, and orders not done (see `on_time_share`)."""
+        """Return on-time shares, lateness, and orders not done ("done" as in `on_time_share`)."""
         orders, names = served(run.logs), class_names(run.logs)
         done, cancelled, overdue = orders["done"], orders["cancelled"], orders["overdue"]
         counted, in_time = done | overdue | cancelled, orders["on_time"]

@@ -15,7 +15,7 @@ KINDS = ("pick", "replenishment")
 
 
 class Stations(Measure):
-    """Shares of the stations' time."""
+    """Shares of time for which stations are idle or switched on."""
 
     columns = (
         Column(
@@ -46,7 +46,7 @@ class Stations(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the mean shares of the stations of each kind; nan if there are none."""
+        """Return mean idle and active shares by kind of station; nan for a kind that is absent."""
         stations = run.tables["stations"]
         told: dict[str, float] = {}
         for share in ("idle", "active"):

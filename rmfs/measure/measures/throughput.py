@@ -85,8 +85,8 @@ class Potential(Measure):
     def footprint(self, run: EndedRun) -> dict[str, Any]:
         """Return the upper bound, the picked units as a share of it, and `units_per_h_at_pile_on`.
 
-        All are nan if there is no positive minimum of the pickers' handling times. A warning is
-        issued if the bound is exceeded.
+        All are nan if pickers' handling times can be arbitrarily short. A warning is issued if the
+        bound is exceeded.
         """
         duration_s = run.logs.duration_s
         layout = at_best(run.layout, run.world.staff)

@@ -23,9 +23,9 @@ UNUSED = "0.94"
 
 
 def heat(frame: pd.DataFrame, ax: Axes, *, column: str = "visits", tier: int = 0) -> None:
-    """Plot a count for every waypoint of a tier, in colours on a logarithmic scale.
+    """Plot a count or time for every waypoint of a tier, in colours on a logarithmic scale.
 
-    Colours get darker with the count, so that the plot is also readable in greyscale.
+    Greater values have darker colours, so that the plot is also readable in greyscale.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ def hours(ax: Axes) -> None:
 
 
 def per_hour(series: pd.DataFrame, column: str, bin_s: float) -> tuple[Floats, Floats]:
-    """Return a count of a table `series` as rates in bins.
+    """Return the hourly rates of a column of a table `series`, averaged over time bins.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def warmup(series: pd.DataFrame, ax: Axes, *, column: str = "units_picked") -> None:
-    """Plot a rate per minute, its moving average, and the warm-ups proposed by MSER-5 and Welch.
+    """Plot the rate in each minute, its moving average, and warm-ups proposed by MSER-5 and Welch.
 
     The warm-up is not recorded in the series, so use a run with `warmup_s = 0`.
 
@@ -23,7 +23,7 @@ def warmup(series: pd.DataFrame, ax: Axes, *, column: str = "units_picked") -> N
     series
         The table `series` of a run.
     column
-        Column with the count of each minute, which is plotted as a rate per hour.
+        Column with a count for each minute; the counts are plotted as rates per hour.
     """
     rate = (series[column] / series["interval_s"] * 3600.0).to_numpy(float)
     time_h = series["time_s"].to_numpy() / 3600.0

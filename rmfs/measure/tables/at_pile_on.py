@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) -> float:
-    """Return the rate at which a station picks with a given pile-on if it never waits.
+    """Return the rate of a station at a given pile-on if the next pod is always ready.
 
     Each of the p units of a visit except the last occupies robot and station for max(T, K), where T
     is `unit_transfer_s` and K is `unit_pick_s`. The last one occupies the robot for K; then the
@@ -31,7 +31,7 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
     Returns
     -------
     float
-        Units per hour; infinite if handling takes no time.
+        Units per hour; infinite if neither handling nor changing pods takes time.
     """
     transfer_s, pick_s = station.unit_transfer_s, station.unit_pick_s
     slower_s = max(transfer_s, pick_s)
@@ -43,10 +43,10 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
 def change_s(layout: Layout, waypoint: int) -> float:
     """Return the minimum time between one robot's departure and the next one's arrival, in s.
 
-    The robot turns from the edge it arrived on to one that leads away, and clears the waypoint when
-    it reaches the next one. Only then may another robot enter the last edge before the waypoint.
-    The result is the minimum over edges and kinds of robots; robots need not stop at the outer ends
-    of these two edges.
+    The departing robot turns from the edge on which it arrived to an edge that leads away, and
+    clears the waypoint when it reaches the end of that edge. Only then may the next robot enter its
+    last edge before the waypoint. The result is the minimum over both edges and over the kinds of
+    robots; at the outer end of an edge, robots need not stop.
     """
     inward, outward = list(_edges_in(layout, waypoint)), list(_edges_out(layout, waypoint))
     if not inward or not outward:

@@ -25,7 +25,7 @@ BUNDLE_LINES = (
     Column("pod", INTEGER, "", "Pod; -1 if not yet decided"),
     Column("station", INTEGER, "", "Replenishment station; -1 if not yet decided"),
     Column("file_line", INTEGER, "", "Line (CSV) or row (Parquet) of the file of bundles"),
-    Column("file_order", TEXT, "", "Order in the file; may be empty"),
+    Column("file_order", TEXT, "", "Name of the bundle's order in the file; may be empty"),
     Column("file_sku", TEXT, "", "Name of the SKU, or its number if it has no name"),
 )
 """Columns of the table; further columns of the file follow, each as `file_NAME`."""

@@ -100,7 +100,7 @@ def edges(logs: Logs) -> pd.DataFrame:
 
 
 def waypoint_kinds(layout: Layout) -> NDArray[np.str_]:
-    """Return the use of each waypoint as a word, shape (N,): as `from_kind` in `connections`."""
+    """Return the kind of each waypoint, as in `from_kind` of `connections`, shape (N,)."""
     kinds = np.full(layout.waypoints, "road", dtype="<U13")
     kinds[layout.is_queue] = "queue"
     kinds[layout.is_storage] = "storage"

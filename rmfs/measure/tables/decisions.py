@@ -159,9 +159,9 @@ CONTROLLERS = (
 
 
 def decisions(logs: Logs) -> pd.DataFrame:
-    """Make a row per call in which a controller made decisions itself, and per question it asked.
+    """Make a row per call in which a controller itself decided, and per question to an optimiser.
 
-    The questions are those to optimisers; all rows are of the measured time, sorted by time.
+    All rows are of the measured time, sorted by time.
     """
     import pandas as pd
 

@@ -101,7 +101,7 @@ def delays(logs: Logs) -> pd.DataFrame:
 
 
 def by_order(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the parts of each order's time, in s: the means over its lines, with the same sum."""
+    """Return each order's turnover and its parts in s, as means over the order's lines."""
     columns = ["turnover_s", *(f"{part}_s" for part in PARTS)]
     return frame.groupby("order")[columns].mean()
 

@@ -92,6 +92,6 @@ def seen_bundles(logs: Logs) -> pd.DataFrame:
 
 
 def visits(logs: Logs) -> pd.DataFrame:
-    """Make a row per visit of a pod to a station that did not end before the measured time."""
+    """Make a row per visit to a station, except visits that ended before the measured time."""
     frame = logs.visits
     return tidy("visits", VISITS, frame[~(frame["end_s"] < logs.start_s)].reset_index(drop=True))

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 class Logs:
     """The recorded data of a run, as frames.
 
-    Names ending in `_now` contain only the measured time; the others also contain the warm-up,
-    because work started then carries over.
+    Frames whose names end in `_now` cover only the measured time; the others also cover the
+    warm-up, because work that starts in it may end in the measured time.
     """
 
     def __init__(self, recorder: Recorder) -> None:
@@ -132,8 +132,8 @@ class Logs:
     def visits(self) -> pd.DataFrame:
         """Visits of pods to stations, with the `units` and `bundles` handled in the measured time.
 
-        Each unit or bundle belongs to the latest visit to its station that had started when it was
-        handled.
+        Each unit or bundle counts for the last visit that had begun at its station by the time of
+        its handling.
         """
         frame = framed(self.recorder.visits)
         frame = frame.sort_values(["station", "begin_s"], ignore_index=True)

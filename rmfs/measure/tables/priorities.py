@@ -84,15 +84,15 @@ def class_weights(logs: Logs) -> tuple[float, ...]:
 
 
 def served(logs: Logs) -> pd.DataFrame:
-    """Return the orders that count for service, as columns.
+    """Return the orders from which service is measured, one per row.
 
     Returns
     -------
     DataFrame
-        `order`, `created_s`, `due_s`, `done_s` (packed or, without packing, picked; empty if not),
-        `class`, and the flags `done`, `cancelled`, `overdue` and `on_time`. Orders done or
-        cancelled before the measured time are excluded; orders that wait and are not overdue have
-        no flag.
+        Columns `order`, `created_s`, `due_s`, `done_s` (when the order was packed or, without
+        packing, picked; empty if not yet), `cancelled_s`, `class`, and the flags `done`,
+        `cancelled`, `overdue` and `on_time`. Orders done or cancelled before the measured time are
+        excluded. If an order still waits at the end and is not overdue, all its flags are false.
     """
     frame = seen(logs)[["order", "created_s", "due_s", "completed_s", "cancelled_s"]]
     frame = frame.rename(columns={"completed_s": "done_s"})

@@ -105,7 +105,7 @@ def robots(logs: Logs) -> pd.DataFrame:
 
 
 def with_task(logs: Logs, task: str) -> Steps:
-    """Return the number of robots with a kind of task over time, warm-up included."""
+    """Return, over time, the number of robots with a task of the given kind, warm-up included."""
     own = logs.tasks[logs.tasks["kind"].to_numpy() == TASKS.index(task)]
     # a task still under way at the end of the run counts up to the end
     ends = own["end_s"].mask(own["end_s"] >= logs.end_s)

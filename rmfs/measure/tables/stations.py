@@ -132,7 +132,7 @@ def stations(logs: Logs) -> pd.DataFrame:
 
 
 def busy_until(logs: Logs, station: int, at_s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how long a station has been busy up to each time, in s."""
+    """Return the total time for which a station has been busy up to each time, in s."""
     own = logs.busy[logs.busy["station"].to_numpy() == station]
     return covered(own["begin_s"].to_numpy(), own["end_s"].to_numpy(), at_s)
 

@@ -57,7 +57,7 @@ def pods(
 
 
 def robots(instance: Instance, waypoints: list[Table]) -> tuple[list[Table], list[Table]]:
-    """Return the kinds of robots, and the robots, each at the nearest waypoint of its tier."""
+    """Return the kinds of robots, and the robots, each put at the nearest waypoint of its tier."""
     nearest = _Nearest(waypoints, [True] * len(waypoints))
     kinds: dict[tuple[float, ...], int] = {}
     found: list[Table] = []

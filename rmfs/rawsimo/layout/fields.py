@@ -44,7 +44,7 @@ class Fields:
     element
         The element; messages name its tag and `ID`.
     problems
-        Collection of errors; the reader continues with 0 for a wrong value.
+        Collection to which errors are added; a wrong value is then read as 0 or false.
     """
 
     def __init__(self, element: Element, problems: Problems) -> None:

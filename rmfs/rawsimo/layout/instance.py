@@ -100,13 +100,19 @@ class Instance:
         return name in self._index[kind]
 
     def position(self, kind: str, name: int, where: str) -> int:
-        """Return the position of an id within its kind; 0 if it is unknown, which adds an error."""
+        """Return the index of the element with the id `name` among those of its kind.
+
+        If there is none, an error is added and the result is 0.
+        """
         if not self.has(kind, name):
             self.problems.add(f"{where}: there is no {kind} {name}")
         return self._index[kind].get(name, 0)
 
     def waypoint(self, text: str | None, where: str) -> int:
-        """Return the position of a waypoint by its id; 0 if it is unknown, which adds an error."""
+        """Return the index of the waypoint with the id in `text`.
+
+        If there is none, an error is added and the result is 0.
+        """
         try:
             name = int(text or "")
         except ValueError:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 def pick_stations(instance: Instance, occupants: Occupants) -> list[Table]:
     """Return the pick stations.
 
-    Without ItemPickTime (or if it is 0), a robot is held as long as the station is occupied, as in
-    RAWSim-O.
+    If a station's ItemPickTime is missing or 0, a unit holds the robot as long as it occupies the
+    station (ItemTransferTime), as in RAWSim-O.
     """
     ranks = _ranks(instance, "OutputStation")
     stations, without = [], 0

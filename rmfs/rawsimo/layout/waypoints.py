@@ -29,8 +29,8 @@ def tiers(instance: Instance) -> list[Table]:
 def waypoints(instance: Instance) -> tuple[list[Table], Occupants]:
     """Return the waypoints, still without edges, and which of them name pods and stations.
 
-    As in RAWSim-O, a waypoint that names a pod or station takes its coordinates, and a waypoint
-    that names a pod is a storage location.
+    As in RAWSim-O, a waypoint that names a pod or station gets the coordinates of that pod or
+    station, and a waypoint that names a pod is a storage location.
     """
     found: list[Table] = []
     occupants: Occupants = {}

@@ -237,7 +237,7 @@ def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[
 
 
 def steps(weights: Sequence[tuple[float, float]]) -> dict[str, Any]:
-    """Convert steps (start, weight) to scenario keys; without steps, there are no keys."""
+    """Convert the steps (start, weight) of a rate to scenario keys; none if there are no steps."""
     if not weights:
         return {}
     if weights[0][0] > 0:

@@ -28,9 +28,9 @@ _COUNTS = {
 
 
 def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
-    """Return the changes of the layout as pairs of path and value.
+    """Return the changes of the layout as pairs of a path of keys and a value.
 
-    Each change consists of two elements, a switch and a value. The name of the value begins with
+    In the block, each change consists of two elements: a switch, and a value whose name begins with
     the name of the switch.
 
     Raises

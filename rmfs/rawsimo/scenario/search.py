@@ -15,8 +15,9 @@ _FOLDERS = (
 def find_beside(settings: Path, named: str, suffix: str) -> Path:
     """Find a file that a settings file names.
 
-    It is sought first under the given path, relative to the folder of the settings file, then by
-    its name alone in that folder and in every folder above, including their resource folders.
+    The path `named` is tried first, relative to the folder of the settings file. Then the file is
+    sought by its name alone, in that folder and all folders above it; in each of these folders,
+    subfolders such as `Resources` and `Wordlists` are searched as well.
 
     Parameters
     ----------

@@ -74,7 +74,7 @@ class Settings:
         return _kind(self._elements.get(tag))
 
     def choice(self, tag: str, choices: Mapping[str, _T], default: str) -> _T:
-        """Return the value in `choices` of the word in an element; other words are errors."""
+        """Return `choices[word]` of the word in an element; a word not in `choices` is an error."""
         word = self.text(tag, default)
         if word not in choices:
             raise self.error(tag, f"must be one of {', '.join(choices)} (given: {word!r:.40})")
@@ -113,7 +113,7 @@ class Settings:
         )
 
     def words(self, tag: str, choices: Mapping[str, str]) -> list[tuple[float, str]]:
-        """Return pairs of a key and the value of its word in `choices`, in order of the keys."""
+        """Return a list of keys and words as pairs (key, `choices[word]`), in order of the keys."""
         found = []
         for key, word in self._pairs(tag):
             if word not in choices:
@@ -122,7 +122,7 @@ class Settings:
         return sorted(found)
 
     def numbers(self, tag: str, default: tuple[float, ...]) -> list[float]:
-        """Return several numbers, from one text with commas or from one element each."""
+        """Return the numbers in an element: one in each child, or else separated by commas."""
         self._read.add(tag)
         element = self._elements.get(tag)
         if element is None:
@@ -131,7 +131,7 @@ class Settings:
         return [self._number(tag, part.strip()) for part in parts]
 
     def weights(self, tag: str) -> dict[str, float]:
-        """Return the number given for each word; words with the number 0 are left out."""
+        """Return the weights by word from a list of both; words with weight 0 are left out."""
         numbers = {key: self._number(tag, value) for key, value in self._pairs(tag)}
         return {key: number for key, number in numbers.items() if number}
 

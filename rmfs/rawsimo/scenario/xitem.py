@@ -52,9 +52,10 @@ class OrderList:
     path
         The file.
     skus
-        Its SKUs. Their popularities are in proportion to the units ordered; equal without orders.
+        Its SKUs; their popularities are in proportion to the units ordered, or equal if there are
+        no orders.
     notes
-        What the reader does not know and has left out.
+        Remarks on unknown elements and attributes, which were left out.
     """
 
     path: Path

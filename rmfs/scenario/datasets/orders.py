@@ -25,7 +25,7 @@ class Order:
     due
         Due time, if the data set has one.
     units
-        Units by SKU, in the order of its lines.
+        Units by SKU, one entry per line, in the sequence of the lines.
     """
 
     time: datetime | float

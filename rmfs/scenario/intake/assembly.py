@@ -26,7 +26,7 @@ T = TypeVar("T")
 
 
 class Assembly(ABC, Generic[T]):
-    """Creates an intake from regular arrivals and batches, with down periods.
+    """Creates an intake of regular arrivals, which pause in down periods, and of batches.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Assembly(ABC, Generic[T]):
         self._stream: OrderStream | BundleStream | None = None
 
     def intake(self, record: Callable[[T], None] | None) -> Intake[T]:
-        """Return the intake, which passes each arrival to `record`, if given."""
+        """Return the intake; `record`, if given, is called with each arrival."""
         processes = [*self._regular(), *self._batches()]
         return Intake(processes, record, self._stream, self._finish())
 

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 class Rest:
-    """Stores the time at which a process may continue after a failed attempt or a down period.
+    """Keeps a process of an intake blocked after a failed attempt or in a down period.
 
     Attributes
     ----------
     until_us
-        Time of the next attempt; `NEVER_US` if the process is not blocked.
+        Time at which the process may continue, if it is blocked; otherwise `NEVER_US`.
     """
 
     def __init__(self, openings: Openings) -> None:
@@ -123,7 +123,7 @@ class BacklogBundles:
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
-        """Return a bundle; None if the backlog is full or paused, or the load limit is reached."""
+        """Return a bundle; None if the backlog is full or paused, or the load would be too high."""
         load = state.load
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)
         if not self._rest.ends(now_us) or not wanted:

@@ -76,7 +76,7 @@ class Batches(Generic[T]):
         self._come = 0
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next order or bundle of a due batch; None if every due batch is complete."""
+        """Return the next order or bundle of a due batch; None if all due batches have ended."""
         while self.next_us <= now_us:
             if self._lacks(state, self._come):
                 thing = self._make(self._ordinal, now_us, state)

@@ -55,7 +55,7 @@ def bundle_intake(
     Raises
     ------
     InputError
-        If a file is invalid, or a bundle fits into no pod.
+        If a file is invalid or contains a bundle that fits into no pod, or a rate is too high.
     """
     bundles = _Bundles(scenario, skus, site, seed, scenario.replenishment.down)
     if recorder is None:

@@ -43,8 +43,8 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     Parameters
     ----------
     path
-        Numbers that select the substreams (see `Substreams`), for orders that are numbered
-        separately, such as those of batches.
+        Numbers that select a branch of the random stream (see `Substreams`); orders that are
+        numbered separately, such as those of batches, have a branch of their own.
 
     Raises
     ------

@@ -73,9 +73,10 @@ def export_stream(
     Raises
     ------
     InputError
-        If the stream depends on events of a run and can only be recorded (a constant backlog, rates
-        tied to active stations, batches that fill up the backlog or the stock); if a file of the
-        scenario is invalid; or if `path` has another suffix or cannot be written.
+        If arrivals depend on what happens in a run (with a constant backlog, replenishment of what
+        orders lack, rates tied to active stations, or batches up to a given backlog or load): such
+        a stream can only be recorded during a run. Also if a file of the scenario is invalid, or
+        `path` has another suffix or cannot be written.
     """
     skus = sku_set(scenario.skus)
     recorder = StreamRecorder()
@@ -97,7 +98,7 @@ def export_stream(
 
 
 def order_stream_of(scenario: Scenario, skus: SkuSet, seed: int) -> OrderStream:
-    """Return all orders of a scenario, which must not depend on a run.
+    """Return all orders of a scenario; they must not depend on what happens in a run.
 
     If order rates are given per pick station, the orders are those for a single pick station.
     """

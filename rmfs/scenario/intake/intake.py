@@ -27,7 +27,7 @@ class OrderArrival(NamedTuple):
     due_us
         Due time.
     redraws
-        Number of draws rejected because the SKU had too few units that no earlier order needs.
+        Number of draws rejected because earlier orders left too few units of the SKU.
     in_file
         Its position among the orders of a file, or -1.
     priority
@@ -120,7 +120,7 @@ class Intake(Generic[T]):
 
     @property
     def next_us(self) -> int:
-        """Time by which `due` must be called again, once everything due has been taken."""
+        """Time by which `due` must be called again; valid after all that is due has been taken."""
         if len(self._processes) == 1:  # the usual case, and this is asked after every change
             return self._processes[0].next_us
         return min(process.next_us for process in self._processes)

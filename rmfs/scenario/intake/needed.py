@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 class NeededBundles:
     """Generates bundles of SKUs that run short (a process of an intake).
 
-    The units of a SKU left for further orders are those stored and those in bundles that wait or
-    are on their way, minus those ordered. The SKU is short if fewer units than the reorder point
-    are left. With a reorder point of 0, only what waiting orders lack is replenished. The SKU with
-    the fewest units left comes first; ties go to the lowest index.
+    What is left of a SKU for further orders: its stored units, plus those in bundles that wait or
+    are on their way, minus those that orders still need. The SKU is short if fewer units than the
+    reorder point are left. With a reorder point of 0, only what waiting orders lack is replenished.
+    The SKU with the fewest units left comes first; ties go to the lowest index.
 
     Parameters
     ----------

@@ -55,7 +55,8 @@ def order_intake(
     Raises
     ------
     InputError
-        If a file is invalid, or an order may need more lines than there are SKUs.
+        If a file is invalid, an order may need more lines than there are SKUs, or a rate is too
+        high.
     """
     orders = _Orders(scenario, skus, site, seed, scenario.demand.down)
     if recorder is None:

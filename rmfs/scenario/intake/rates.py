@@ -58,7 +58,7 @@ def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: in
     Raises
     ------
     InputError
-        If the rate exceeds the maximum at some time.
+        If the rate ever exceeds `MOST_PER_H`.
     """
     rate: Rate
     if isinstance(config, HighLowRate):

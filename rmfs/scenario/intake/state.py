@@ -35,7 +35,7 @@ class State(Protocol):
 
     @property
     def waiting_orders(self) -> int:
-        """Number of orders not yet at a station."""
+        """Number of orders not yet assigned to a pick station."""
 
     @property
     def waiting_bundles(self) -> int:
@@ -51,7 +51,7 @@ class State(Protocol):
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:
-        """Stored units of each SKU minus ordered units, shape (K,); may be negative."""
+        """Stored units of each SKU minus those that orders need, shape (K,); may be negative."""
 
     @property
     def incoming(self) -> NDArray[np.int64]:
@@ -59,8 +59,8 @@ class State(Protocol):
 
     @property
     def active_pick_share(self) -> float:
-        """Share of active pick stations; at least one counts as active."""
+        """Share of the pick stations that are active; if none is, one counts as active."""
 
     @property
     def active_replenishment_share(self) -> float:
-        """Share of active replenishment stations; at least one counts as active."""
+        """Share of the replenishment stations that are active; if none is, one counts as active."""

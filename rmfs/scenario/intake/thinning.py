@@ -66,7 +66,7 @@ class Poisson:
         self._ordinal = 0
 
     def redraw(self, now_us: int) -> None:
-        """Redraw everything after a time, which is valid as the process is memoryless."""
+        """Redraw all arrivals after a time; this is valid because the process is memoryless."""
         self._rate.redraw(now_us)
         if self._rate.peak_per_h:
             self._time_us = now_us

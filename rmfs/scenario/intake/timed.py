@@ -24,7 +24,7 @@ class Timed(Generic[T]):
     Parameters
     ----------
     candidates
-        The possible arrivals, in order of time; see `share` for those that are not accepted.
+        The possible arrivals, in order of time; `share` decides which are accepted.
     make
         Creates the arrival for an accepted candidate.
     share

@@ -28,10 +28,10 @@ Levels = Annotated[tuple[Level, ...], pydantic.Strict(strict=False)]
 
 
 class DownPeriods(Block):
-    """Times at which nothing is generated.
+    """Periods in which nothing but batches arrives.
 
     A backlog is not topped up, a Poisson rate is zero, and a stream from a file holds back its
-    arrivals until the period ends. Batches are not affected.
+    arrivals until the period ends.
     """
 
     cycle_s: Cycle = DAY_S

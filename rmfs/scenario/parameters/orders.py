@@ -14,7 +14,7 @@ from rmfs.scenario.quantities import Block
 
 
 class Orders(Block):
-    """Orders with several lines, each for a SKU drawn by popularity or affinity."""
+    """Orders of one or more lines, each for a SKU drawn by popularity or affinity."""
 
     content: Literal["skus"] = Field("skus", description="each line is drawn from all SKUs")
     lines: NormalOrListed = Field(

@@ -72,8 +72,8 @@ class PoissonReplenishment(_Drawn):
 class NeededReplenishment(_Replenishment):
     """Bundles arrive for SKUs of which too few units are left for further orders.
 
-    The units left are those stored and those in bundles that wait or are on their way, minus those
-    ordered.
+    What is left of a SKU: its stored units, plus those in bundles that wait or are on their way,
+    minus those that orders still need.
     """
 
     mode: Literal["needed"] = Field(

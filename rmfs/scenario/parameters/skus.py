@@ -45,8 +45,8 @@ class GeneratedAffinity(Block):
 class GeneratedSkus(_Sizes):
     """SKUs drawn from distributions.
 
-    Their seed belongs to the scenario, as a published SKU file would: runs with different seeds
-    share their SKUs and differ in stock and demand.
+    They have a seed of their own, which is part of the scenario: runs with different seeds share
+    their SKUs, as they would with a SKU file, and differ in stock and demand.
     """
 
     count: Count = Field(1000, description="number of SKUs")
@@ -85,7 +85,8 @@ class SkuFile(_Sizes):
 class LetterSkus(_Sizes):
     """The letters of a list of words, each in several colours (Alphabet Soup).
 
-    A SKU is a letter in one colour; how often it is ordered follows from the words.
+    A SKU is a letter in one colour; the words and the weights of the colours determine how often
+    it is ordered.
     """
 
     words: WordFile = Field(

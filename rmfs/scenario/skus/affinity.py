@@ -25,8 +25,8 @@ class Affinity:
     ----------
     first, second
         The pairs with a weight of their own, as SKU indices, shape (n,) each. A pair counts in the
-        given direction (previous line, next line) only; if an .xgenc file gives one direction, the
-        opposite one is added with the same weight.
+        given direction (previous line, next line) only; if an .xgenc file gives only one direction
+        of a pair, the opposite one is added with the same weight.
     weight
         Weight of each pair, shape (n,).
     default_weight
@@ -46,10 +46,10 @@ class Affinity:
             array.setflags(write=False)
 
     def samplers(self, skus: int) -> Callable[[int], Categorical | None]:
-        """Return a function that returns, for a SKU, a sampler that draws the SKU of the next line.
+        """Return a function from the SKU of a line to the sampler of the SKU of the next line.
 
         A sampler takes memory in proportion to the number of SKUs, so only recent samplers are
-        cached. A sampler is None if no SKU has a positive affinity to the given one.
+        cached. The function returns None if no SKU has a positive affinity to the given one.
         """
         order = np.argsort(self.first, kind="stable")
         starts = np.searchsorted(self.first[order], np.arange(skus + 1))

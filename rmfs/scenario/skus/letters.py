@@ -33,8 +33,8 @@ _LONGEST_LINE = 8 * LONGEST_WORD
 class Alphabet:
     """Words and the colours of their letters; a SKU is a letter in one colour.
 
-    SKUs are numbered letter by letter in alphabetical order, and for each letter colour by colour
-    in the order given.
+    SKUs are numbered by letter in alphabetical order and, within a letter, by colour in the order
+    given.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class Alphabet:
 def letter_sku_set(config: LetterSkus) -> SkuSet:
     """Return the SKUs of a list of words.
 
-    The popularity of a SKU is the frequency of its letter in all words times the share of its
+    The popularity of a SKU is the frequency of its letter in all words times the weight of its
     colour.
 
     Raises

@@ -24,9 +24,9 @@ class _UnreadableError(ValueError):
 def read_csv(path: Path, rows: Rows, problems: Problems) -> None:
     """Pass the rows of a CSV file to a receiver; line 1 contains the column names.
 
-    A line is read only up to the maximum length, so memory is bounded. Errors in the contents are
-    added to `problems`. Reading ends at a wrong line 1, at a line that is too long or is not text,
-    or after `MOST_ROWS` lines.
+    A line is read only up to the maximum length (`LONGEST_LINE`), so memory is bounded. Errors in
+    the contents are added to `problems`. Reading ends at a wrong line 1, at a line that is too long
+    or is not text, or after `MOST_ROWS` lines.
 
     Raises
     ------

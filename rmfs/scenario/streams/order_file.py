@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class OrderFile:
     """Names and additional columns of n orders with a total of m lines, as in their file.
 
-    In a file of bundles, each bundle is an order of one line.
+    A file of bundles is represented in the same way: each bundle counts as an order of one line.
 
     Attributes
     ----------

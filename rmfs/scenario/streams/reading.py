@@ -27,9 +27,10 @@ def read_orders(
 ) -> OrderStream:
     """Read orders from a .csv or .parquet file.
 
-    The columns are time (s or ISO 8601, not decreasing), order (any name), sku (its name or id),
-    quantity (units) and due (as time; may be empty or missing), in any order. An order's lines
-    follow each other. Further columns are kept (`OrderStream.file`).
+    The columns are `time` (s or ISO 8601, not decreasing), `order` (any name), `sku` (its name or
+    id), `quantity` (units) and `due` (due time, in the format of `time`; may be empty or missing);
+    their sequence is free. The lines of an order are consecutive. Further columns are kept
+    (`OrderStream.file`).
 
     Parameters
     ----------
@@ -37,8 +38,8 @@ def read_orders(
         Date and time of time zero. Default: midnight before the first order, if times are in ISO
         8601.
     classes
-        Names of the classes of orders. If there are any, a column priority contains the name of the
-        class of each order; it may be missing, or empty for some orders.
+        Names of the classes of orders. If there are any, a column `priority` contains the name of
+        the class of each order; it may be missing, or empty for some orders.
 
     Raises
     ------
@@ -57,9 +58,9 @@ def read_bundles(
 ) -> BundleStream:
     """Read bundles from a .csv or .parquet file.
 
-    The columns are time (s or ISO 8601, not decreasing), sku (its name or id) and quantity (units),
-    in any order; a column order (any name) is allowed, and due must be empty. Each line is a
-    bundle. Further columns are kept (`BundleStream.file`).
+    The columns are `time` (s or ISO 8601, not decreasing), `sku` (its name or id) and `quantity`
+    (units); their sequence is free. A column `order` (any name) is allowed; a column `due` must be
+    empty. Each line is a bundle. Further columns are kept (`BundleStream.file`).
 
     Parameters
     ----------

@@ -9,8 +9,8 @@ class StreamRecorder:
     """Collects the orders and bundles of a run as they arrive.
 
     Passed to `order_intake` and `bundle_intake`, it records streams that depend on the run, such as
-    the orders of a constant backlog. `orders.build()` is a stream that can be written with
-    `write_stream` and read back with `mode = "stream"`.
+    the orders of a constant backlog. `orders.build()` is a stream: `write_stream` writes it to a
+    file, which a scenario reads back with `mode = "stream"` in its table `demand`.
 
     Attributes
     ----------

@@ -70,7 +70,10 @@ def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> floa
 def neighbours(
     sku: NDArray[np.int64], first_line: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return for each pair of consecutive lines its two SKUs and its order, shape (m,) each."""
+    """Return first SKU, second SKU and index of the order of each pair of consecutive lines.
+
+    Only lines of the same order form a pair. The three arrays have one element per pair.
+    """
     order = np.repeat(np.arange(len(first_line) - 1), np.diff(first_line))
     here = np.flatnonzero(order[1:] == order[:-1])
     return sku[here], sku[here + 1], order[here]
@@ -139,7 +142,11 @@ def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Draw
 
 
 def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
-    """Return `skus` with a share of affinity; on average, each SKU is paired with two others."""
+    """Return `skus` with affinity: random pairs of SKUs that are ordered together.
+
+    A line after the first is drawn by affinity with probability `share`, that is, from the partners
+    of the SKU of the previous line. On average, a SKU has two partners.
+    """
     pairs = min(skus.count, skus.count * (skus.count - 1) // 2)
     given = GeneratedAffinity(share=round(share, 6), pairs=pairs, default_weight=0.0)
     return skus.model_copy(update={"affinity": given})

@@ -25,8 +25,9 @@ class Arrivals(NamedTuple):
     hours
         Rate in each hour of the cycle, orders per h.
     dispersion, p
-        Ratio of variance to mean of the number of orders per hour (1 for a Poisson process), and
-        the two-sided p value of a chi-square test of it; nan if there are too few hours.
+        Ratio of variance to mean of the number of orders per hour, given the fitted rates (1 for a
+        Poisson process), and the two-sided p value of a chi-square test of this ratio; both nan if
+        there are too few hours.
     """
 
     mean: Estimate

@@ -23,7 +23,7 @@ class Estimate(NamedTuple):
     name
         Name of the parameter.
     value, low, high
-        Its value, and the ends of its confidence interval (`LEVEL`).
+        Its value, and the ends of its confidence interval at level `LEVEL`.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Agreement(NamedTuple):
     name
         Name of the figure.
     data, twin
-        Value of the figure in each; nan if it cannot be computed.
+        Value of the figure for the data and for the twin; nan if it cannot be computed.
     p
         p value of the test of fit that belongs to the figure; nan without a test.
     """
@@ -52,7 +52,7 @@ class Agreement(NamedTuple):
 
 
 def shares(name: str, counts: NDArray[np.int64]) -> list[Estimate]:
-    """Return the shares of the values 1, 2, ... with Wilson's score intervals.
+    """Return the relative frequencies of the values 1, 2, ... with Wilson's score intervals.
 
     Parameters
     ----------

@@ -53,7 +53,8 @@ class Twin:
     orders
         Number of orders in the file.
     skus
-        SKUs of the twin, if they cannot be drawn from the scenario and need a file.
+        SKUs of the twin, if they cannot be generated from distributions, so that the scenario needs
+        a file of them; None otherwise.
     """
 
     scenario: Scenario

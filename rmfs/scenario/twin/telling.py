@@ -23,7 +23,9 @@ COLUMNS = ("kind", "name", "value", "low", "high", "twin", "p")
 
 
 def write_twin(twin: Twin, path: Path) -> None:
-    """Write the scenario, and NAME-skus.json beside it if its SKUs cannot be drawn.
+    """Write the scenario; if its SKUs cannot be generated from distributions, write them too.
+
+    The file of the SKUs is NAME-skus.json, beside the scenario NAME.toml.
 
     Raises
     ------

@@ -70,7 +70,7 @@ class EnergyGuard:
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:
-        """Send every robot that could not complete another task to charge.
+        """Send to charge every robot that could not complete another task.
 
         To be called before tasks are assigned. A robot that carries a pod stores it first.
         """

@@ -60,7 +60,7 @@ class Pacing(Protocol):
         ...
 
     def limit_us(self, now_us: int) -> int:
-        """Return the latest time in us that may be simulated; wait until it is past `now_us`."""
+        """Wait until times after `now_us` may be simulated; return the latest such time, in us."""
         ...
 
     def end(self) -> None:

@@ -70,7 +70,7 @@ Measured with the POA rule `rollout` at the site `small-arrivals` on the same ma
 
 
 class Computed(ABC):
-    """Solves each question in the process of the simulation, which waits for the answer."""
+    """Solves each question in the same process as the simulation, which waits for the answer."""
 
     waits = False
 
@@ -84,7 +84,7 @@ class Computed(ABC):
         Raises
         ------
         OptimiserError
-            If the optimiser fails, because a reproducible run must not depend on chance.
+            If the optimiser fails: a reproducible run stops, as the failure may be due to chance.
         """
         ask = call.ask
         try:

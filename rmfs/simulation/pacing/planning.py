@@ -109,8 +109,8 @@ def planning_settings(overrides: Overrides) -> PlanningSettings:
     Parameters
     ----------
     overrides
-        Pairs of path and value: an empty path for the mode (`fixed=0.3`), otherwise a parameter,
-        such as `(["period_s"], 5)`.
+        Pairs of path and value. With an empty path, the value is the mode, such as `fixed=0.3`;
+        the other pairs are parameters, such as `(["period_s"], 5)`.
 
     Raises
     ------
@@ -146,7 +146,7 @@ def planning_settings(overrides: Overrides) -> PlanningSettings:
 def let_plans_take_time(
     traffic: Traffic, settings: PlanningSettings, planner: str, read: Reader
 ) -> None:
-    """Let plans of trips take time in a fleet that has not begun to move.
+    """Let the path planning of a fleet take simulated time; the fleet must not have moved yet.
 
     Parameters
     ----------
@@ -169,8 +169,8 @@ def let_plans_take_time(
         return
     if planner != "time-windows":
         raise InputError(
-            f"pacing.planning: {settings.mode}: not possible with path planner {planner}, which "
-            "plans all robots together; valid: controllers.pp.name=time-windows"
+            f"pacing.planning: {settings.mode}: not possible with the rolling path planner "
+            f"{planner}; valid: controllers.pp.name=time-windows"
         )
     numbers = (0.0, 0.0)
     match how:

@@ -99,8 +99,8 @@ def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) 
     mode
         `instant`, `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR`.
     overrides
-        Pairs of path and value for its parameters, such as `(["speed"], 2.0)`; paths that begin
-        with `planning` concern path planning.
+        Pairs of path and value for the parameters of the mode, such as `(["speed"], 2.0)`; paths
+        that begin with `planning` concern path planning.
 
     Raises
     ------

@@ -46,9 +46,9 @@ class Wall:
 
     While a question is open, the simulated time since it was asked is at most the wall time since
     it was submitted, times `speed` (RAWSim-O paper, section 3.1). Its answer takes effect when the
-    wall time that it took, times `speed`, has passed in the simulation. This wall time runs from
-    before the question is pickled until the worker has pickled the answer; waiting for a free
-    worker counts, but starting a worker does not.
+    wall time that it took, times `speed`, has passed in the simulation. This wall time begins just
+    before the question is pickled and ends when the worker has pickled the answer. It includes the
+    time that the question is queued, but not the time that `ask` first waits for a worker to start.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class Wall:
             self._hand_over(asked, worker)
 
     def limit_us(self, now_us: int) -> int:
-        """Return the simulated time in us covered by wall time; sleep until it passes `now_us`.
+        """Sleep until times after `now_us` may be simulated; return the latest such time, in us.
 
         Without open questions there is no limit.
         """

@@ -108,7 +108,7 @@ class Worker:
             self.is_ready = True
 
     def ask(self, number: int, load: bytes) -> None:
-        """Send a question; `load` is the pickled pair of the function and its argument."""
+        """Send a question; `load` is the pickled pair of the solving function and its argument."""
         self.number = number
         # a worker that has just died is found out when its reply is awaited
         try:
@@ -174,7 +174,7 @@ class Workers:
     def idle(self) -> Worker | None:
         """Return an idle worker that is ready; None if all are busy.
 
-        If a worker has just been started, this waits until it is ready.
+        If no idle worker is ready yet, this waits until one is.
         """
         idle = [worker for worker in self._workers if worker.number < 0]
         if not idle:

@@ -106,7 +106,7 @@ class PackingStage(Observer):
             self._let_go()  # parts that had to wait for a slot need none any more
 
     def order_assigned(self, order: Order) -> None:
-        """Keep a part at its pick station after all if new lines have been added to it."""
+        """If lines were added to a part that waits to leave its pick station, keep it there."""
         for held in self._wall.held:
             if held.order is order:
                 self._forget(held)

@@ -53,7 +53,7 @@ class Hands(Observer):
         return self._staff.at_station[station] is not None
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the first pick on the shown face for an order at the station, or None."""
+        """Return the first pick from the shown face for an order at the station; None if none."""
         faces, shown = self._faces, self._shown(station)
         if faces is None or shown < 0:
             return None
@@ -75,7 +75,7 @@ class Hands(Observer):
         Returns
         -------
         Handled
-            How the unit is handled, with the times in s that it takes this picker.
+            How the unit is handled, with the times in s for which it occupies picker and robot.
         """
         staff, now_s = self._staff, self._world.now_s
         picker = staff.at_station[station]

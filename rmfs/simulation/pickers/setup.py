@@ -53,7 +53,8 @@ def staffed(
     Raises
     ------
     InputError
-        If a shift has more pickers than there are pick stations, or a file of times is invalid.
+        If a shift has more pickers than there are pick stations, or the file of measured times is
+        invalid.
     """
     if given is None:
         return [], None

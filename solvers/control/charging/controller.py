@@ -52,13 +52,13 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
         self._plan: tuple[Call, set[int], dict[int, int]] | None = None
 
     def next_event_s(self) -> float:
-        """Return when the next schedule is due; inf without batteries or while one is computed."""
+        """Return when the next schedule is due; inf while one is computed, or without batteries."""
         if self.view.batteries is None or self.in_flight:
             return inf
         return max(self._asked_s, 0.0) + self.parameters.period_s
 
     def decide(self) -> Iterator[Told]:
-        """Ask for a schedule when it is due, and send robots that have become free meanwhile."""
+        """Ask for a schedule when one is due, and carry out what is due now."""
         batteries = self.view.batteries
         if batteries is None:
             return

@@ -23,7 +23,7 @@ class _Seen(NamedTuple):
 
 
 class Forecast:
-    """Counts the robots in use for work, and forecasts the number needed from recent counts.
+    """Counts the robots in use for work; recent counts yield a forecast of how many are needed.
 
     Robots at rest, charging, or queuing behind another waiting robot at a pick or replenishment
     station are not counted. Some stations with work have no robot at the head of their queue.

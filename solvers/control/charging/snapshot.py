@@ -31,11 +31,11 @@ class Group:
     stations
         The chargers or swap stations of the group.
     power_w
-        Charging power of a place; 0 for swap.
+        Charging power of one charger; 0 for swap stations.
     swapped_share
-        Level after a swap; 0 for plug-in places.
+        Level after a swap; 0 for chargers.
     swaps_s
-        Mean time per swap at one station in the long run, in s; 0 for plug-in places.
+        Mean time per swap at one station in the long run, in s; 0 for chargers.
     """
 
     stations: tuple[RecoveryStation, ...]
@@ -64,9 +64,10 @@ def groups_of(view: View, batteries: Batteries) -> list[Group]:
 
 
 def slot_s(groups: Sequence[Group], batteries: Batteries, share: float) -> float:
-    """Return the time in which the most powerful place charges a share of a battery, in s.
+    """Return the length of a time slot, in s.
 
-    If the site only swaps batteries, return the longest mean time per swap (`swaps_s`) of a group.
+    This is the time in which the most powerful charger charges `share` of a battery. Without
+    chargers, it is the longest mean time per swap (`swaps_s`) of all groups.
     """
     power_w = max((group.power_w for group in groups), default=0.0)
     if power_w > 0:

@@ -30,18 +30,18 @@ if TYPE_CHECKING:
 
 
 class PileOnControl(PickOrderAssignment[PileOnParameters]):
-    """Maintains a plan of orders that wait for slots and pods that wait for robots.
+    """Maintains a plan: orders that wait for slots, and called pods that wait for robots.
 
     The model extends the plan. It is asked, at most once per `buffer_s`, after the events in
     `triggers`: a station runs out of work within the horizon, a pod reaches a station, or a slot is
     free for which nothing is planned. It determines which orders go to which station, and which
     pods are called for them. It also returns *prospects*: orders that the same pods can serve as
-    soon as slots are free. Free slots get orders, and free robots fetch pods, from this plan; parts
-    that have become invalid are dropped.
+    soon as slots are free. Free slots get the planned orders, and free robots fetch the called
+    pods; parts of the plan that have become invalid are dropped.
 
-    A robot due to bring a pod to a station fetches the nearest of the pods called for it. If the
-    optimiser fails, its method `greedy` decides. For replenishment, and for open requests that no
-    pod called or under way can serve, PPS lexicographic with its defaults decides.
+    A robot that is to bring a pod to a station fetches the nearest pod called for this station. If
+    the optimiser fails, its method `greedy` decides. For replenishment, and for open requests that
+    no pod called or under way can serve, PPS lexicographic with its defaults decides.
     """
 
     parameters_model = PileOnParameters
@@ -73,7 +73,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Decision]:
-        """Fill slots by the plan, and ask the optimiser if the plan has to be extended."""
+        """Fill slots by the plan; when the plan has to be extended, ask the optimiser."""
         yield from self._carry_out()
         if not self._buffer.is_over(not self.in_flight and self._is_short()):
             return
@@ -122,10 +122,10 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     # --- pods -----------------------------------------------------------------------------------
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
-        """Return the nearest pod that is called for a station and can serve its open requests.
+        """Return the nearest pod that is called for a station and can serve an open request there.
 
-        If no pod is called for the station, and pods under way do not bring all units that its
-        orders need, PPS lexicographic chooses a pod. In all other cases, the result is -1.
+        If no pod is called for the station, and pods under way do not bring all units that the
+        station's orders need, PPS lexicographic chooses a pod. Otherwise, the result is -1.
         """
         called = self._plan.pods[station.index]
         pods = [pod for pod in called if self._plan.useful(pod, station)]

@@ -16,7 +16,7 @@ AsksPileOn = Literal["pod-at-station", "free-slot", "short-of-work"]
 
 
 class JointParameters(SearchParameters):
-    """Parameters shared by both controllers with the joint model."""
+    """Parameters shared by POA pile-on and TA pile-on, which use the same joint model."""
 
     method: Method = "joint"
     """Solution method: `greedy` (repeatedly calls the pod with the greatest gain); `joint` (the
@@ -88,7 +88,7 @@ class JointParameters(SearchParameters):
 
     @property
     def variant(self) -> Variant:
-        """Return how orders, or lines treated as orders, may be covered."""
+        """Return whether an order may take a slot before pods are called for all its lines."""
         return Variant.LATER if self.later else Variant.WHOLE
 
     @pydantic.model_validator(mode="after")

@@ -37,8 +37,8 @@ class Called(NamedTuple):
 class Plan:
     """For each pick station, items that wait for a slot, and called pods that wait for a robot.
 
-    A planned item reserves the stock with which it was planned: later questions omit it and count
-    its units as demand of its station.
+    A planned item reserves the stock with which it was planned: later questions omit the item, and
+    count its units as demand of the station for which it is planned.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class Plan:
         Number of slots of each station that are reserved for orders that the pod at the head of
         its queue can serve.
     later
-        Whether items may be assigned while pods for some of their lines are still to come.
+        Whether items may be assigned before pods are called for all their lines.
     split_orders
         Maximum number of orders split at a time; None: as many as the put wall holds.
     """
@@ -80,7 +80,7 @@ class Plan:
         return {planned.item.key for items in self.items for planned in items}
 
     def splitting(self, pays: Callable[[Order], bool] | None = None) -> Splitting:
-        """Return which orders may be split now, including those with lines already planned.
+        """Return the capacity left for split orders; orders with planned lines count as split.
 
         Parameters
         ----------
@@ -126,10 +126,10 @@ class Plan:
     def due(self, station: PickStation) -> Iterator[Planned]:
         """Yield items that can be assigned to a station now, one at a time.
 
-        Items that the pod at the head can serve come first. They may use the reserved slots, and so
-        may items that a called pod can serve, if this pod serves no open request of the station.
-        Invalid items are dropped and counted as stale: those that have left the backlog and, unless
-        `later`, those whose stock has gone.
+        Items that the pod at the head of the queue can serve come first. They may use the reserved
+        slots, and so may items that a called pod can serve, if that called pod serves no open
+        request of the station. Items are dropped and counted as stale if they have left the backlog
+        or, unless `later`, if pods called or under way no longer have enough units for them.
         """
         self._forget_pods(station)
         waiting = self.items[station.index]
@@ -202,9 +202,9 @@ class Plan:
         )
 
     def useful(self, pod: int, station: PickStation) -> bool:
-        """Whether a pod can serve an open request of a station, and has no task.
+        """Whether a pod is available, and can serve an open request of a station.
 
-        A pod carried by a robot with a task counts as having one.
+        Pods that are being carried, or are reserved for a task, are not available.
         """
         inventory, at_hand = self._view.inventory, self._view.storage.is_at_hand.item
         return bool(at_hand(pod)) and inventory.serves(pod, list(station.requests.lines))

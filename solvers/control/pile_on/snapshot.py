@@ -75,7 +75,7 @@ def take(
     Parameters
     ----------
     robots
-        Robots that are free to fetch pods; None if robots are not decided.
+        Robots that are free to fetch pods; None if the model does not choose robots.
     """
     taken = plan.keys()
     open_units = _open_units(view, plan)

@@ -82,16 +82,17 @@ _ASKS: dict[Trigger, AsksTasks] = {
 class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     """Asks a model which orders take slots, which pods come, and which robots fetch them.
 
-    The model is asked, at most once per `buffer_s`, after the events in `triggers`, as long as a
-    slot is free for which nothing is planned. It may use the robots without a task. Its answer is
-    stored as a plan and carried out as in POA pile-on; a called pod whose robot has got another
-    task meanwhile is fetched by the next free robot.
+    The model is asked, at most once per `buffer_s`, after the events in `triggers`, provided that a
+    slot is free or a request open for which nothing is planned. It may use the robots without a
+    task. Its answer is stored as a plan and carried out as in POA pile-on; if the robot chosen for
+    a called pod is no longer free, the nearest free robot fetches the pod.
 
-    Decisions outside M1G are made by rules. A robot with a pod continues while the pod can serve
-    its station (or, optionally, another pick station nearby), and then parks it where PSA says. Up
-    to `replenishment_share` of the robots bring pods to replenishment stations: each goes to the
-    nearest one with work, with a pod chosen by PPS lexicographic. All other robots rest. If the
-    optimiser fails, its method `greedy` decides.
+    Decisions outside M1G are made by rules. A robot keeps its pod at the station while there is
+    work for the pod, then (with `other_stations`) takes it to pick stations nearby that it can
+    serve, and finally parks it where PSA says. Up to `replenishment_share` of the robots bring pods
+    to replenishment stations: each goes to the nearest one with work, with a pod chosen by PPS
+    lexicographic. Robots that get no task rest. If the optimiser fails, its method `greedy`
+    decides.
     """
 
     parameters_model = PileOnTasksParameters

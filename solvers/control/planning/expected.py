@@ -21,7 +21,7 @@ KEPT = 1000
 
 @dataclass(frozen=True)
 class ExpectedLine:
-    """A line of a future order, with the attributes of an order line."""
+    """A line of a future order; attributes are named as in `OrderLine`."""
 
     sku: int
     open_units: int
@@ -29,7 +29,7 @@ class ExpectedLine:
 
 @dataclass(frozen=True)
 class ExpectedOrder:
-    """A future order, with the attributes of an order."""
+    """A future order; attributes are named as in `Order`."""
 
     lines: tuple[ExpectedLine, ...]
     created_s: float
@@ -38,7 +38,7 @@ class ExpectedOrder:
 
 
 class ExpectedOrders:
-    """Draws orders that may arrive soon: past orders, at the rate at which orders arrived.
+    """Draws future orders from known orders, at the rate at which orders have arrived so far.
 
     A controller knows neither the arrival process nor the orders it will generate. It knows the
     orders from before the run (`View.past_orders`), the initial backlog, and the orders that have
@@ -69,7 +69,7 @@ class ExpectedOrders:
         self._come += 1
 
     def draw(self, horizon_s: float, scenarios: int) -> list[list[ExpectedOrder]]:
-        """Draw future orders one or more times; there are none before the first arrival.
+        """Draw future orders one or more times; until an order has arrived, draws are empty.
 
         Orders with a line that no single pod can serve are left out.
 

@@ -27,7 +27,7 @@ class Question:
     data
         The snapshot.
     start
-        For each station, the pods of those new visits of the last plan that are still possible.
+        For each station, the pods that the last plan has yet to call, as far as they are available.
     method, limits, seed
         Method of the search, its limits and its seed.
     bound_steps
@@ -48,8 +48,8 @@ def solve(question: Question) -> Answer:
     Returns
     -------
     Answer
-        `pods`: pods of the new visits per station, padded with -1, shape (S, V); `order_station`
-        and `line_visit` as in the model.
+        `pods`: pods to be called for each station, in sequence, padded with -1, shape (S, V);
+        `order_station` and `line_visit` as in the model.
     """
     data = question.data
     found = planning.solve(

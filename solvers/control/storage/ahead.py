@@ -57,7 +57,7 @@ class Ahead(PodStorageAssignment[P]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Ask if the buffer time is over and no answer is pending."""
+        """Ask the optimiser when the buffer time is over and no answer is pending."""
         if not self._buffer.is_over(not self.in_flight):
             return
         robots = [robot for robot in self.view.robots if _will_store(robot)]

@@ -39,7 +39,7 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Choose the place of each pod; the answer has its waypoint, `place`, shape (P,)."""
+    """Choose the place of each pod; `place` in the answer contains the waypoints, shape (P,)."""
     found = placement.solve(question.data, question.method)
     values = None if found.values is None else {"place": question.waypoint[found.values]}
     return answer(found, values)

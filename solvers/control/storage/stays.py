@@ -32,7 +32,7 @@ _SERVICE_S = 30.0
 
 @dataclass(frozen=True)
 class Question:
-    """Stays, with those of the returning pods first.
+    """Stays of pods in zones; the first ones are those of the returning pods.
 
     Attributes
     ----------
@@ -73,13 +73,13 @@ class StaysParameters(StorageParameters, SearchParameters):
 
 
 class StaysControl(Ahead[StaysParameters]):
-    """Assigns zones to pods by the times at which they and others will be fetched.
+    """Assigns zones to pods by the times at which they and other pods will be fetched.
 
     A returning pod is assumed to be fetched after its expected stay, or after the horizon if that
-    is earlier. Stored pods whose expected stay is shorter than the horizon leave their zone after
-    it; the others only occupy their places. An integer program chooses the zones so that there is
-    always room and robot time is least. Within its zone, a pod takes the empty place nearest to its
-    station.
+    is earlier. A stored pod whose expected stay is shorter than the horizon leaves its zone at the
+    end of that stay; the other stored pods only occupy their places. An integer program chooses the
+    zones so that there is always room and robot time is least. Within its zone, a pod takes the
+    empty place nearest to its station.
     """
 
     parameters_model = StaysParameters

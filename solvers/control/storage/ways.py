@@ -20,7 +20,7 @@ UNREACHABLE_S = 1e5
 
 
 class Ways:
-    """Times of storing and fetching pods, for every storage location (place).
+    """Travel times of storing and fetching pods, for each of the L storage locations (places).
 
     Parameters
     ----------

@@ -50,11 +50,11 @@ P = TypeVar("P", bound=TaskParameters)
 class Asking(TaskAllocation[P]):
     """Asks the optimiser what the robots that need a task, and those at rest, should do.
 
-    The optimiser is asked as soon as a robot needs a task, and for robots at rest when there is new
-    work, at most once per `buffer_s`. If the optimiser fails, and for robots with a pod also while
-    an answer is pending (`rule_meanwhile`), a rule decides: a pod continues at a station that it
-    can serve, or is parked; an empty robot works for the station with work that has the fewest pods
-    under way; ties are broken by travel time.
+    The optimiser is asked when a robot needs a task or, for robots at rest, when there is new work,
+    but at most once per `buffer_s`. A rule decides for robots without a valid decision in the
+    answer and, while an answer is pending, for robots with a pod (`rule_meanwhile`): a pod
+    continues at a station that it can serve, or is parked; an empty robot works for the station
+    with work that has the fewest pods under way; ties are broken by travel time.
     """
 
     goes_on = True
@@ -71,14 +71,20 @@ class Asking(TaskAllocation[P]):
 
     @abstractmethod
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the valid decisions of a solution; must iterate over its parts by `call.left`."""
+        """Yield the decisions of a solution that are still valid.
+
+        Implementations must iterate over the parts of the solution with `call.left`.
+        """
 
     def next_event_s(self) -> float:
         """Return when a question may next be asked, in s; inf if an event has to occur first."""
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Told]:
-        """Ask if there is something to ask, or decide by the rule while an answer is pending."""
+        """When there is something to decide, ask the optimiser.
+
+        While an answer is pending, decide by the rule for robots with a pod (`rule_meanwhile`).
+        """
         self._consult = consult
         if self._buffer.is_over(not self.in_flight and self._has_news()):
             yield self._ask(consult)
@@ -88,7 +94,7 @@ class Asking(TaskAllocation[P]):
                     yield from self._by_rule(robot, consult)
 
     def answered(self, call: Call) -> Iterator[Told]:
-        """Carry out the answer, and decide by the rule where there is none."""
+        """Carry out the answer, and decide by the rule for robots without a valid decision."""
         consult = self._consult
         if call.solution is not None:
             yield from self.carry_out(call, consult)
@@ -107,16 +113,19 @@ class Asking(TaskAllocation[P]):
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:
-        """Return the decision to rest where the rest rule says, or else where the robot is."""
+        """Return the decision to rest at the place that the rest rule chooses.
+
+        If it finds no place, the robot rests where it is.
+        """
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def place_for(self, robot: Robot, consult: Consult) -> int:
-        """Return a storage location for the pod of a robot, or -1."""
+        """Return a storage location for the pod of a robot, or -1 if there is none."""
         return consult.place_for(robot)
 
     def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:
-        """Return a pod that a robot should bring to a station, or -1."""
+        """Return a pod that a robot should bring to a station, or -1 if there is none."""
         return consult.pod_for(robot, station)
 
     def may_come(self, station: int) -> int:

@@ -31,7 +31,7 @@ Method = Literal["balance", "matching", "greedy"]
 
 @dataclass(frozen=True)
 class Question:
-    """Robots, and pods that could be brought to stations."""
+    """Robots, the tasks of bringing pods to stations, and the method that assigns them."""
 
     data: Balance
     method: str
@@ -89,13 +89,15 @@ class DispatchControl(Asking[DispatchParameters]):
     """Assigns robots to stations; PPS chooses the pods that they bring.
 
     There are two kinds of tasks. A carried pod can be taken to any station that it can serve.
-    A robot without a pod can bring one to a station with work; there are as many such tasks per
-    station as there are robots without a pod, within the station's limit of robots and its work.
+    A robot without a pod can bring one to a station with work; each station has one such task for
+    each robot without a pod, but no more tasks than further robots may come
+    (`robots_per_station`), and no more than it has open units or waiting bundles.
     With `matching`, total travel time is minimised (linear assignment). With `balance`, waiting
     behind other pods and lateness of orders count as well (minimum-cost flow). Tasks that are not
     worth the trip are left out: pods are parked, and robots rest.
 
-    As PPS chooses the pod later, the time to bring a pod is the mean over all pods with work.
+    As PPS chooses the pod only later, the time that a robot needs to bring a pod is estimated as
+    the mean over all pods that the station could use.
     """
 
     parameters_model = DispatchParameters

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Worth:
-    """Value of the work of a pod, in seconds of a robot.
+    """Value of the work of a pod, in seconds of a robot's time.
 
     Attributes
     ----------
@@ -63,12 +63,12 @@ class Job:
 
 
 def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) -> list[Job]:
-    """Choose pods for every station, one after another.
+    """Choose the next pods of every station, one pod after another.
 
     The next pod of a station is the one with the largest difference of value and trip time; ties go
-    to the lowest number. At pick stations, the value counts completed orders and units of requests
-    that earlier pods leave open; at replenishment stations, it counts bundles. Each pod is chosen
-    only once.
+    to the lowest number. At pick stations, the value counts units picked and orders completed
+    beyond those of the pods chosen before; at replenishment stations, it counts bundles. Each pod
+    is chosen only once.
 
     Parameters
     ----------

@@ -46,8 +46,8 @@ class Question:
     method
         `lns`, `cp_sat`, `columns` or `greedy`.
     tasks, places
-        Number of next tasks after each pod, and number of places between a pod and a next task,
-        that CP-SAT considers.
+        For CP-SAT: number of next tasks considered after each pod, and number of places considered
+        for storing the pod before each of these tasks.
     """
 
     data: TaskSequence
@@ -60,9 +60,9 @@ class Question:
 def solve(question: Question) -> Answer:
     """Plan routes; the answer has their first steps.
 
-    These are the `place` where each robot stores its pod and its first `task`, shape (R,), -1 for
-    none. Neighbourhood search works alone; CP-SAT over the shortest arcs, and column generation,
-    start from the solution of insertion.
+    For each robot, these are the `place` where it stores the pod that it carries, and the first
+    `task` of its route; shape (R,), -1 for none. CP-SAT, which considers only the shortest arcs,
+    and column generation start from the solution of cheapest insertion.
     """
     data = question.data
     found = sequence.solve(data, "lns" if question.method == "lns" else "greedy", question.limits)
@@ -87,7 +87,7 @@ class Memo:
     robots
         The robots of the routes.
     again
-        Robots whose pod is served again where it stands.
+        Robots at a station that has more work for their pod.
     jobs
         The job behind each task.
     places
@@ -135,14 +135,14 @@ class RoutesParameters(TaskParameters, SearchParameters):
 class RoutesControl(Asking[RoutesParameters]):
     """Plans routes in which robots store and fetch pods, and lets each robot take the first step.
 
-    The robots are those that need a task or rest, those that are storing a pod, and those at the
-    head of a queue. The tasks are the best next pods of every station, each due when its station
+    The robots are those that need a task, are at rest, are storing a pod, or are being served at a
+    station. The tasks are the best next pods of every station, each due when its station
     runs out of work. The objective combines driving, lateness and the value of tasks left undone: a
     pod is stored where the trip there and on to the next pod is short, not at the nearest place.
     The plan is renewed whenever a robot needs a task.
 
-    A pod whose station has more work for it stays there. The routes include pods and places, so PPS
-    and PSA must be `dummy`. Without an answer, pods go to the nearest empty place.
+    A pod whose station has more work for it stays there. The routes determine pods and places, so
+    PPS and PSA must be `dummy`. Without an answer, pods go to the nearest empty place.
     """
 
     parameters_model = RoutesParameters
@@ -161,7 +161,7 @@ class RoutesControl(Asking[RoutesParameters]):
         return self._nearest.place(robot)
 
     def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:
-        """Return the best next pod of a station, or -1."""
+        """Return the best next pod of a station, or -1 if there is none."""
         return next((job.pod for job in self._jobs() if job.station == station), NONE)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:

@@ -14,7 +14,10 @@ NONE = -1
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Simulate robots by time slots; return the cost of energy, drives and missing robots."""
+    """Simulate the time slots one by one, and return the cost of the plan.
+
+    The cost is that of missing energy, drives, time away from work, and too few robots at work.
+    """
     group, begin, length = (values[name].tolist() for name in ("group", "begin", "length"))
     cases, slots = data["wanted"].shape
     within("group", group, NONE, len(data["gain"]))

@@ -66,8 +66,8 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
 
     Returns
     -------
-    The answer, without a bound, as solution files contain none. `by` states the times of building
-    and solving separately.
+    The answer, without a bound, as solution files contain none. Its `by` states the wall time of
+    building the program (`build_s`) and the total (`wall_s`).
 
     Raises
     ------

@@ -46,7 +46,11 @@ def matching(data: Matching) -> Stated:
 
 
 def balance(data: Balance) -> Stated:
-    """Matching with costs of waiting: the k-th robot sent to a station waits for k - 1 others."""
+    """Matching with costs of waiting.
+
+    The k-th robot sent to a station waits for the pods already there or on their way, and for k - 1
+    others.
+    """
     builder = ProgramBuilder()
     x, left = _robots(builder, data.pairs)
     stations = len(data.room)

@@ -42,7 +42,7 @@ def write_program(stated: Exact, path: Path) -> None:
 
 
 def write_map(decision: Decision, stated: Exact, path: Path) -> None:
-    """Write the decisions that the columns stand for (`rmfs-decision-map/1`).
+    """Write which decision each column stands for (`rmfs-decision-map/1`).
 
     Parameters
     ----------

@@ -33,7 +33,8 @@ def derived(family: str, size: str, asked: Iterable[Decision]) -> Iterator[Decis
 
     `rack_allocation`: orders, free slots and pods of a pile-on question; a station without a free
     slot takes one order. `sequencing`: one station and the first orders of the backlog, with the
-    available pods that hold any of their SKUs. `run_bound`: the site with other numbers of robots.
+    available pods that hold any of the orders' SKUs. `run_bound`: the site of that size, with
+    several numbers of robots (`ROBOTS`).
 
     Parameters
     ----------

@@ -131,7 +131,7 @@ def draw(family: str, size: str) -> Iterator[Decision]:
 
     Yields
     ------
-    The questions; `provenance["drawn"]` states size, demand, moment and seed.
+    The questions; `provenance["drawn"]` states size, kind of demand, third of the run, and seed.
     """
     assert family in SCHEMAS
     seen: set[str] = set()

@@ -91,7 +91,7 @@ def improve(
     families, sizes
         Families and sizes of the questions. Default: all.
     tell
-        Called with each improvement.
+        Called with a line about each question after its searches, and about each failed search.
 
     Returns
     -------

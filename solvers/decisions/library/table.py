@@ -45,8 +45,8 @@ class Row:
     question
         Name of the question.
     family, size, load, moment
-        Its family, and the size of site, kind of demand and part of the run (such as `early`) from
-        which it was drawn.
+        Its family, and from what it was drawn: the size of the site, the kind of demand, and the
+        part of the run (such as `early`).
     value, bound
         Best known value and bound; nan if there is none.
     value_by, bound_by
@@ -69,7 +69,7 @@ class Row:
 
     @property
     def gap(self) -> float:
-        """Difference of value and bound, as a share of the larger; nan if either is missing."""
+        """Difference of value and bound over the larger magnitude; nan if either is missing."""
         apart = abs(self.value - self.bound)
         return 0.0 if apart == 0.0 else apart / max(abs(self.value), abs(self.bound))
 
@@ -147,7 +147,7 @@ class Library:
         WrongError
             If the answer is infeasible.
         InputError
-            If the question is not in the library, or the bound contradicts the best value.
+            If the question is not in the library, or value and bound contradict each other.
         """
         if decision.name not in self.rows:
             raise InputError(f"{decision.name}: is not in {self.folder}")
@@ -199,7 +199,7 @@ class Library:
 
 
 def questions(folder: Path) -> Iterator[Path]:
-    """Yield the questions below a folder, sorted by path."""
+    """Yield the paths of the question files below a folder, sorted."""
     for path in sorted(folder.rglob("*.json.gz")):
         if ".solution." not in path.name:
             yield path

@@ -149,8 +149,8 @@ def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> fl
     """Return a lower bound on the cost of every assignment, derived from a given assignment.
 
     The prices `v` of the columns are the lengths of the shortest alternating paths, which are 0 or
-    negative (Bellman-Ford over the rows); columns without a row have price 0. The bound is valid
-    for any given assignment, and tight if it is optimal.
+    negative (Bellman-Ford over the rows); columns without a row have price 0. Any given assignment
+    yields a valid bound, and an optimal one the tight bound.
 
     Parameters
     ----------

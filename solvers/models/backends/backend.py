@@ -21,7 +21,7 @@ V = TypeVar("V")
 
 
 class Backend(Protocol):
-    """A solver of integer programs: the signature of `highs.solve` and `cp_sat.solve`."""
+    """The signature of a solver of integer programs, such as `highs.solve` and `cp_sat.solve`."""
 
     def __call__(
         self,
@@ -43,11 +43,11 @@ class Formulation(Generic[V]):
     program
         The program.
     encode
-        Turns the model's values into column values.
+        Function that turns the model's values into column values.
     decode
-        Turns column values into the model's values.
+        Function that turns column values into the model's values.
     objective, violations
-        Functions of the model.
+        Functions that give the objective and the violated constraints of the model's values.
     names
         Function that gives the name and meaning of each column; see `Names`.
     """
@@ -104,7 +104,7 @@ def solve_by(
 
 
 def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
-    """Return the start if the search has not found anything better within its limit.
+    """Return a search's result, with the start as its values if it found nothing as good.
 
     Parameters
     ----------

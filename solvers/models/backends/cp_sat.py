@@ -65,7 +65,7 @@ def solve(
     Raises
     ------
     ModelError
-        If the program is not of this kind, or a number is too large for the solver.
+        If the program is not as described above, or a number is too large for the solver.
     WallGuardError
         If the wall-clock guard ran out.
     """

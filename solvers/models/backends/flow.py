@@ -113,7 +113,7 @@ def min_cost_flow(network: Network) -> Flow | None:
 
 
 def flow_bound(network: Network, potential: NDArray[np.float64]) -> float:
-    """Return a lower bound on the cost of every flow, which is valid for any potentials.
+    """Return a lower bound on the cost of every flow; any potentials give a valid bound.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ class Outcome:
     status
         Final status.
     backend
-        Name of the adapter.
+        Name of the back end.
     work
         Deterministic work in the back end's unit.
     build_s, wall_s
@@ -57,7 +57,7 @@ class Outcome:
         *,
         build_s: float = 0.0,
     ) -> Solution[V]:
-        """Turn columns into a model's values, with the objective recomputed from them.
+        """Return the model's solution, with the objective recomputed from its values.
 
         Parameters
         ----------
@@ -66,8 +66,7 @@ class Outcome:
         objective
             The model's own objective function.
         build_s
-            Seconds the model spent before the adapter was called; they are added to `build_s` and
-            `wall_s`.
+            Seconds spent before the back end was called; they are added to `build_s` and `wall_s`.
 
         Returns
         -------
@@ -116,14 +115,16 @@ class Relaxation:
 
 
 def trivial(program: LinearProgram, backend: str) -> Outcome | None:
-    """Solve a program without columns here, as each solver treats such programs in its own way.
+    """Solve a program that has no columns, without calling the solver.
+
+    Solvers differ in how they treat such programs.
 
     Parameters
     ----------
     program
         The program.
     backend
-        Name of the calling adapter.
+        Name of the back end that is to appear in the outcome.
 
     Returns
     -------

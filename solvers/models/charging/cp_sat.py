@@ -16,7 +16,10 @@ def solve(
     seed: int = 0,
     start: ChargePlan | None = None,
 ) -> Solution[ChargePlan]:
-    """Find the stay of each robot by constraint programming; `deterministic_s` and `gap` apply."""
+    """Find the stay of each robot by constraint programming.
+
+    Of the limits, `deterministic_s` and `gap` apply.
+    """
     return solve_by(
         with_relaxed_bound(cp_sat.solve), lambda: formulate(data), limits, seed=seed, start=start
     )

@@ -55,8 +55,8 @@ class Charging:
         Whether a robot is already on its way to a place, shape (R,): it is away from work until its
         stay is over, and its battery does not drain.
     here
-        Group of the place where a robot is being charged, or `AWAY`, shape (R,). Its stay begins in
-        time slot 0; if it has no stay, it leaves now.
+        Group of the place where a robot is being charged, or `AWAY`, shape (R,). A stay of such a
+        robot continues there from time slot 0; without a stay, the robot leaves now.
     way_s
         Time from each robot to a place of each group, shape (R, G), in s; +inf where it may not go.
         A stay begins with this drive, unless the robot is already there. The cost of a stay also
@@ -203,8 +203,8 @@ class Charging:
     def missing_s(self, away: Integers) -> Floats:
         """Return the additional cost of missing robots in each time slot, shape (T,), in s.
 
-        This is the mean over the cases of the number of missing robots, times `missed_s`. The cost
-        of all time away from work (`idle`) is not included.
+        This is the mean over the cases of the number of missing robots, times `missed_s`. It is
+        added to what time away from work costs even if no robot is missing (`idle`).
 
         Parameters
         ----------
@@ -219,7 +219,7 @@ class Charging:
     def missed_s(self) -> float:
         """Additional cost, in s, if a robot is away from work in a time slot in which it is needed.
 
-        The cost of all time away from work (`idle`) is not included.
+        It is added to what the time slot costs even if the robot is not needed (`idle`).
         """
         return self.slot_s * (1 - self.idle)
 
@@ -251,7 +251,7 @@ def costs_s(data: Charging, robot: Integers, plan: ChargePlan) -> Floats:
     robot
         Robot of each stay, shape (N,).
     plan
-        The stays, each of shape (N,).
+        The stays; its arrays have one entry per stay, shape (N,).
     """
     stays, group = plan.group != AWAY, np.maximum(plan.group, 0)
     waits, here = data.waits[robot], data.here[robot] != AWAY

@@ -46,7 +46,7 @@ def solve(
     data
         The problem.
     limits
-        `iterations` limits the rounds. Default: 10.
+        `iterations` limits the number of rounds, in each of which every robot chooses. Default: 10.
     seed
         Not used.
     start

@@ -23,7 +23,7 @@ NONE = np.zeros(0, dtype=np.int64)
 
 @dataclass(frozen=True)
 class Columns:
-    """The index of each column and the entities it refers to, by family.
+    """The index of each column and the entities it refers to, for each kind of column.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Columns:
     short_station, short_sku, short
         Station, SKU and column v of each shortage.
     robot, fetched, fetch
-        Robot, pod and column b of each pair.
+        Robot, pod and column b of each pair of robot and pod.
     """
 
     pod: Integers

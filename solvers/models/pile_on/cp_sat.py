@@ -21,7 +21,7 @@ def solve(
     candidates: Candidates | None = None,
     strengthen: bool = True,
 ) -> Solution[Assignment]:
-    """Decide with CP-SAT; `deterministic_s` and `gap` apply.
+    """Decide with CP-SAT; of the limits, `deterministic_s` and `gap` apply.
 
     Parameters
     ----------

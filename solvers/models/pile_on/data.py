@@ -48,8 +48,8 @@ class PileOn:
     inbound
         Station a pod is already assigned to, or -1, shape (P,). Such a pod is not called again.
     open_units
-        Units per station and SKU that the orders already there still need and that no pod has
-        reserved, shape (S, K).
+        Units per station and SKU that the orders already there still need but have not reserved on
+        any pod, shape (S, K).
     fetch
         Cost for each robot to reach each pod, shape (R, P). None: robots are not decided here.
     robot_pod
@@ -59,8 +59,8 @@ class PileOn:
         Extra reward for giving an order its (first) slot, shape (O,), for example for its age or
         due time. Default: none.
     may_call
-        Whether pods may be called to each station, shape (S,); the others receive only pods that
-        are on their way already. Default: to all.
+        Whether pods may be called to each station, shape (S,). A station to which none may be
+        called receives only pods that are on their way already. Default: to all.
     variant
         How orders may be covered. Default: whole.
     weights
@@ -204,7 +204,7 @@ class PileOn:
 
     @cached_property
     def call_cost(self) -> Floats:
-        """Weighted cost of calling a pod to a station, without its robot, shape (P, S)."""
+        """Weighted cost of calling a pod, not counting the robot's way to the pod, shape (P, S)."""
         cost: Floats = self.weights.visit + self.weights.travel * self.travel
         return cost
 
@@ -217,7 +217,7 @@ class PileOn:
 
     @cached_property
     def needs_robot(self) -> Flags:
-        """Whether a called pod needs a free robot, shape (P,)."""
+        """Whether a pod, if called, needs a free robot, shape (P,)."""
         needs = np.full(self.pods, self.fetch is not None)
         if self.robot_pod is not None:
             needs[self.robot_pod[self.robot_pod >= 0]] = False

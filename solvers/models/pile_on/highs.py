@@ -19,7 +19,7 @@ def solve(
     candidates: Candidates | None = None,
     strengthen: bool = True,
 ) -> Solution[Assignment]:
-    """Decide with HiGHS; `nodes` and `gap` apply.
+    """Decide with HiGHS; of the limits, `nodes` and `gap` apply.
 
     Parameters
     ----------

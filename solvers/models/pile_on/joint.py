@@ -33,7 +33,7 @@ def solve(
     data, limits, seed
         As for every method.
     start
-        A further decision to start from. Default: only that of pod match.
+        A decision to start from if it is better than that of pod match. Default: none.
     pruning
         How many candidates CP-SAT is given. Default: the defaults of `Pruning`.
     bound_steps
@@ -42,9 +42,9 @@ def solve(
     Returns
     -------
     A feasible decision, never worse than pod match or the start, with a bound of the full input.
-    Its work is measured in deterministic seconds of CP-SAT; only the last step can exceed the
-    limit. The effort of building the programs, and that of pod match, are counted in `built`; the
-    steps for the bound are not counted.
+    Its work is measured in deterministic seconds of CP-SAT, whose last run may exceed the limit.
+    The effort of building the programs, and that of pod match, are counted in `built`; the steps
+    for the bound are not counted.
     """
     began = time.perf_counter()
     rule = greedy.solve(data, seed=seed)

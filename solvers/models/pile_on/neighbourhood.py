@@ -36,7 +36,7 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Improve a decision part by part.
+    """Improve a decision by re-optimising one part of it, a pair of stations, at a time.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ class Offers:
     Parameters
     ----------
     pod, line, units
-        One entry per pod and line whose SKU it holds, sorted by pod, then line.
+        One entry per pair, sorted by pod, then line; `units` is the pod's stock of the SKU.
     match
         Number of the match to which each entry belongs. A *match* is a pair of a pod and an order
         for which the pod holds units.
@@ -165,7 +165,7 @@ class PartialAssignment:
         return pods[(self.pod_station[pods] < 0) & np.isfinite(self._fetch[pods])]
 
     def call_costs(self, pods: Integers, station: int) -> Floats:
-        """Cost of calling each of the pods to a station, including its nearest free robot."""
+        """Cost of calling each pod to a station, including that of the pod's nearest free robot."""
         cost: Floats = self.data.call_cost[pods, station] + self._fetch[pods]
         return cost
 
@@ -374,7 +374,9 @@ def decision(partial: PartialAssignment) -> Assignment:
 
 
 def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
-    """Send the free robots to the called pods at the least total cost, shape (P,).
+    """Return the free robot that fetches each called pod, or -1, shape (P,).
+
+    The total cost is the least possible. A pod that needs no free robot gets -1.
 
     Parameters
     ----------

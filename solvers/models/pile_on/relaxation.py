@@ -16,10 +16,10 @@ from rmfs.solvers.models.solution import NO_LIMITS, Limits
 
 
 class PileOnRelaxation:
-    """Bounds for a sequence of inputs, compiled anew only when their pattern changes.
+    """Relaxations of a sequence of inputs, compiled anew only when the input's pattern changes.
 
-    Inputs share a pattern as long as the same pods hold SKUs of the same lines; costs, weights,
-    quantities and slots may change.
+    Inputs usually share a pattern as long as the same pods hold SKUs of the same lines, even if
+    costs, weights, quantities or slots change.
 
     Attributes
     ----------

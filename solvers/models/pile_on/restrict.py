@@ -118,7 +118,7 @@ class Part:
         return np.flatnonzero(np.isin(self.full.line_order, self.orders))
 
     def start(self) -> Assignment:
-        """The fixed decision, restricted to the part."""
+        """The decision `values`, restricted to the part."""
         values = self.values
         robot_of = self._numbering(self.robots, self.full.robots)
         station_of = self._numbering(self.stations, self.full.stations)
@@ -162,7 +162,7 @@ class Part:
 def part(
     data: PileOn, candidates: Candidates, values: Assignment, stations: Integers
 ) -> Part | None:
-    """Free the decisions of a few stations.
+    """Make the part in which the decisions of a few stations are freed and all others fixed.
 
     An order that also has a slot at another station stays as it is: its slots at the freed stations
     remain taken, its lines there become open demand, and a pod called there stays called if it

@@ -112,7 +112,7 @@ def uncovered(data: PileOn, values: Assignment) -> Integers:
     data
         The input.
     values
-        The decision. If it uses more units than there are, the numbers exceed the shortage.
+        The decision. If it takes more units than the pods hold, the result exceeds the shortage.
     """
     have = data.surplus + called_supply(data, values)
     return np.maximum(data.shortage + demand(data, values) - have, 0)

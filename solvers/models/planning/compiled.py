@@ -22,7 +22,7 @@ class Found(NamedTuple):
 
 
 def visits(data: Planning) -> Visits:
-    """Pass an input to the compiled search, without SKUs that no line wants."""
+    """Create the compiled search for an input; SKUs that no line asks for are left out."""
     wanted, sku = np.unique(data.line_sku, return_inverse=True)
     stock = data.stock if len(wanted) == data.stock.shape[1] else data.stock[:, wanted]
     return Visits(

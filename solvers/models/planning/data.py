@@ -40,7 +40,8 @@ class Planning:
     order_station
         Station at which an order is open, or -1 if it waits, shape (O,).
     order_until
-        Last visit of a pod under way that carries units for an open order, or -1, shape (O,).
+        For each order, the last visit by a pod under way that carries units for it; -1 if there is
+        none; shape (O,).
     order_worth
         Reward for closing an order, in addition to the rewards for its lines, shape (O,), in s of
         robot time.
@@ -170,8 +171,8 @@ class Planning:
     def kept(self) -> list[int]:
         """Number of orders that each station may keep open from one visit to the next.
 
-        This is the number of its slots minus one, or, if that is more, the number of its open
-        orders that have lines to plan or get units from the second or a later pod under way.
+        This is the larger of two numbers: its slots minus one; and its open orders that have lines
+        to plan or get units from the second or a later pod under way.
         """
         stays = self.order_until > 0
         stays[self.line_order] = True

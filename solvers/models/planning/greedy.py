@@ -37,8 +37,8 @@ def solve(
     start
         A feasible plan whose visits are kept. Default: none.
     pods
-        Visits per station of an earlier plan, which are kept where still possible; `start` takes
-        precedence. Default: none.
+        Pods of the new visits of an earlier plan, station by station. Visits that are still
+        possible are kept. Not used if `start` is given. Default: none.
     bound_steps
         Number of steps for the bound (`prices`). Default: no bound.
 

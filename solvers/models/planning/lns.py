@@ -49,8 +49,8 @@ def solve(
     start
         A feasible plan. Default: none.
     pods
-        Visits per station of an earlier plan, which are kept where still possible; `start` takes
-        precedence. Default: none.
+        Pods of the new visits of an earlier plan, station by station. The start rule keeps visits
+        that are still possible. Not used if `start` is given. Default: none.
     bound_steps
         Number of steps for the bound (`prices`). Default: no bound.
 

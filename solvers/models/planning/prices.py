@@ -31,7 +31,7 @@ def bound(data: Planning, value: float, steps: int) -> float:
     Parameters
     ----------
     value
-        Objective of a known plan, at which the steps aim.
+        Objective of a known plan, from which the length of the subgradient steps is computed.
     steps
         Number of times the prices are improved; with 0 the bound is -inf.
     """

@@ -28,10 +28,10 @@ def solve(
 ) -> Solution[Allocation]:
     """Fill stations one after another, the one with the most slots first.
 
-    Until its slots are filled, a station gets the pod that completes the most of the remaining
-    orders, and these orders with it, those with the fewest units first. If no pod completes an
-    order, the station gets the pod that adds the most missing lines. Pods that turn out to be
-    unnecessary are released.
+    Until its slots are filled, a station gets the pod that completes the most remaining orders,
+    together with the orders that are then complete, those with the fewest units first. If no pod
+    completes an order, the station gets the pod that holds missing units of the most order lines.
+    Pods that turn out to be unnecessary are released.
 
     Returns
     -------

@@ -39,8 +39,8 @@ class Replenishment:
     Parameters
     ----------
     worth_s
-        Robot time saved later if each bundle is stored in each pod, shape (B, P), in s; -inf where
-        it may not be stored.
+        Robot time that storing a bundle in a pod saves later, shape (B, P), in s; -inf where the
+        bundle may not be stored.
     leave_s
         Cost of leaving each bundle for later, shape (B,), in s; +inf if it must be stored.
     space

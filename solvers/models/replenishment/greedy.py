@@ -116,7 +116,7 @@ class Filling:
         self._room[station] -= sum(self._space[bundle] for bundle in bundles)
 
     def gain(self, pod: int, station: int, wanted: list[int]) -> tuple[float, list[int]]:
-        """Return the gain of bringing a pod for the wanted bundles that fit, and these bundles.
+        """Return the gain of bringing a pod, and the wanted bundles that fit, for which it comes.
 
         Parameters
         ----------

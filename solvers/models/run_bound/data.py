@@ -63,7 +63,7 @@ class PickStations:
 
     @property
     def cadence_s(self) -> NDArray[np.float64]:
-        """Least time between two picks from the same pod, shape (S,), in s.
+        """Least time between the starts of two picks in a visit, shape (S,), in s.
 
         This is the longer of `unit_transfer_s` and `unit_pick_s`.
         """
@@ -71,7 +71,10 @@ class PickStations:
 
     @property
     def change_s(self) -> NDArray[np.float64]:
-        """Least time from the last pick of a visit to the first of the next, shape (S,), in s."""
+        """Least time from the start of a visit's last pick to that of the next visit's first pick.
+
+        Shape (S,), in s.
+        """
         return np.maximum(self.unit_transfer_s, self.unit_pick_s + self.changeover_s)
 
 
@@ -154,7 +157,7 @@ class Orders:
         Maximum number of units in an order; infinity if unknown. Default: unknown.
     lone_units
         Maximum number of units of orders that are served whole from one visit. If the demand is
-        known, these are the units of those orders whose SKUs are all on a single pod. Default:
+        known, these are the units of the orders for which some pod holds all SKUs. Default:
         unlimited.
     join_visits
         Whether an order assigned to the station while a pod is served there can still be served
@@ -238,9 +241,9 @@ class RunBound:
 
     @property
     def end_effect_s(self) -> float:
-        """Maximum time, per robot, that counted visits take outside the window, in s.
+        """Maximum time per robot by which the visits counted extend outside the window, in s.
 
-        This is a drive in, a service and a drive out.
+        This is a drive in before the window, and a service and a drive out after it.
         """
         inbound = np.concatenate([self.picking.inbound_s, self.refill.inbound_s])
         outbound = np.concatenate(

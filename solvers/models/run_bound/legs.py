@@ -38,7 +38,9 @@ def visit_legs(
     between_s: NDArray[np.float64],
     transfer_s: float,
 ) -> Legs:
-    """Compute the robot time charged to a visit of each station; pick stations come first.
+    """Compute the robot time charged to a visit of each station.
+
+    In all arrays, the pick stations come before the replenishment stations.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class Columns:
     visit, started, finished, passing, room
         Columns v (T, pods), s and f (T + 1, O; row 0 is before the first visit), c (T, O), r (T,).
     order, sku, take
-        Order and SKU of each need, and its columns d, shape (T, needs).
+        Order and SKU of each need, shape (needs,), and the columns d, shape (T, needs).
     """
 
     data: Sequencing

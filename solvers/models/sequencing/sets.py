@@ -22,7 +22,7 @@ class Sets:
     needs
         Needed SKUs of each order.
     holds
-        Needed SKUs of each remaining pod.
+        Needed SKUs that each remaining pod holds.
     pod
         The remaining pods in the numbering of the input, shape (len(holds),).
     """

@@ -25,9 +25,9 @@ def solve(
 
     Returns
     -------
-    The place of each pod, shape (P,); ties go to the lowest index. The status is LIMIT if a pod is
-    left without a place, as the rule never revises a choice, and INFEASIBLE if no place is allowed
-    for some pod.
+    The place of each pod, shape (P,); ties go to the lowest index. The status is INFEASIBLE if no
+    place is allowed for some pod, and LIMIT if a pod is left without a place for another reason:
+    the rule never revises a choice, so a placement may exist.
     """
     begin = perf_counter()
     cost_s = data.cost_s

@@ -60,7 +60,7 @@ class Stays:
 
     @cached_property
     def periods(self) -> tuple[NDArray[np.int64], NDArray[np.int64], int]:
-        """Find the fewest moments at which occupied places must be counted.
+        """Find the fewest moments (*periods*) at which occupied places must be counted.
 
         The number of stays present can only grow until a stay ends, so it suffices to count just
         before a stay ends, when the stays present form a maximal set of simultaneous stays.

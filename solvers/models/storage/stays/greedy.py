@@ -28,7 +28,8 @@ def solve(
     Stays with the largest cost difference between zones, per hour of the stay, choose first,
     because a good place is better used by several short stays than by a long one. If that leaves a
     stay without a zone, stays choose again in the order in which they begin. This second sequence
-    fails only if some zones are not allowed or there are too few places for any choice.
+    can fail only if a zone is forbidden for some stay, or if the zones together have too few
+    places.
 
     Returns
     -------

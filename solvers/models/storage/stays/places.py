@@ -12,7 +12,7 @@ from rmfs.solvers.models.storage.stays.data import Stays, violations
 
 
 def places(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Give every stay the lowest-numbered place of its zone that is free when it begins.
+    """Give every stay, when it begins, the lowest-numbered free place of its zone.
 
     Places of a zone are numbered from 0. As stays are processed in the order in which they begin,
     no more places are needed than there are simultaneous stays (interval colouring).

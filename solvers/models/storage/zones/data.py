@@ -34,8 +34,8 @@ class Zones:
     Parameters
     ----------
     visit_s
-        Robot time of one visit to a pod of each class from each zone, to the station and back,
-        shape (I, J), in s.
+        Robot time for taking a pod of each class from each zone to the station and back, shape
+        (I, J), in s.
     rate_per_h
         Visit rate of a pod of each class, shape (I,), in 1/h.
     pods
@@ -43,7 +43,8 @@ class Zones:
     places
         Number of places of each zone, shape (J,).
     congestion_s_h
-        Delay of a visit in seconds for each visit per hour to the same zone, shape (J,), in s h.
+        By how much one more visit per hour to each zone delays every visit to it, shape (J,), in
+        s h.
 
     Raises
     ------

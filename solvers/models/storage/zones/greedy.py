@@ -21,9 +21,10 @@ def solve(
 ) -> Solution[ZonePlan]:
     """Place classes in portions, most visited first, each portion where a visit takes least time.
 
-    The time includes the delay that one more visit causes to itself and to other visits. A pod
-    saves robot time compared with the best zone that still has room; the price of places in a zone
-    is the smallest such saving among the pods there, or 0 if no zone has room.
+    The time includes the delay that one more visit causes to itself and to other visits. The price
+    of a place in a zone is the least robot time per hour that any pod there saves compared with the
+    best zone that still has room. It is never negative, and 0 if the zone is empty or no zone has
+    room.
 
     Returns
     -------

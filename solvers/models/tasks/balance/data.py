@@ -87,7 +87,7 @@ class Balance:
 
     @property
     def pairs(self) -> Matching:
-        """The matching problem without stations; each pair costs its travel and lateness."""
+        """The matching problem without queues; each pair costs its travel and weighted lateness."""
         late_s = np.maximum(0.0, self.arrive_s - np.where(np.isinf(self.due_s), 0.0, self.due_s))
         counted = self.late_weight * np.where(np.isinf(self.due_s) | np.isinf(late_s), 0.0, late_s)
         return Matching(self.arrive_s + counted, self.leave_s)

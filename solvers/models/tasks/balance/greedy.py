@@ -22,9 +22,9 @@ def solve(
 ) -> Solution[NDArray[np.int64]]:
     """Let tasks choose robots in order of due time; tasks that must be done come first.
 
-    A task is left if its travel, lateness and additional waiting cost more than leaving it. For the
-    bound, robots may do any number of tasks, and every task finds only the present queue at its
-    station.
+    A task is left if its travel, lateness and additional waiting cost more than leaving it. The
+    bound is computed as if a robot could do any number of tasks, and every task found only the
+    present queue at its station.
 
     Returns
     -------

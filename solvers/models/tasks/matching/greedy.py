@@ -21,7 +21,8 @@ def solve(
 ) -> Solution[NDArray[np.int64]]:
     """Repeatedly match the pair that saves the most compared with leaving the task.
 
-    Tasks that must be done come first. For the bound, robots may do any number of tasks.
+    Tasks that must be done come first. The bound is computed as if a robot could do any number of
+    tasks.
 
     Returns
     -------

@@ -14,7 +14,8 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, Routes, TaskSequence
 class Ways:
     """Arcs that routes may use.
 
-    The *owner* of a pod is a robot or a task: robot r has the number r, task t the number R + t.
+    The *owner* of a pod to be stored is the robot that carries it initially, or the task that
+    brings it to a station. Robot r has the owner number r, task t has R + t.
 
     Attributes
     ----------
@@ -54,8 +55,11 @@ def every_way(data: TaskSequence) -> Ways:
 def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> Ways:
     """Return the shortest arcs, together with those of a plan, which thus remains feasible.
 
-    For each owner, the tasks nearest via the best place are included, and for each task the owners
-    nearest to it, each over the best places. A route may end at the nearest places.
+    A task may follow an owner (see `Ways`) if it is one of the nearest tasks to that owner, or the
+    owner is one of the nearest to the task, by travel time via the best place. An arc is included
+    for each of the best places of such a pair. Likewise, a task may come first for a robot without
+    a pod if one is among the nearest to the other. A route may end at the places nearest to its
+    last station, or to its start if it has no task.
 
     Parameters
     ----------
@@ -64,8 +68,7 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
     keep
         A plan.
     tasks
-        Number of next tasks kept for each owner and each robot without a pod, and number of owners
-        and robots without a pod kept as predecessors of each task.
+        How many tasks, owners, or robots without a pod count as nearest.
     places
         Number of places kept for each pair of owner and task, and for the end of each route.
 

@@ -29,8 +29,8 @@ _DEPOT = 0
 class Circuit:
     """The model of one problem.
 
-    Nodes are numbered: depot, robots, tasks (the owner of a pod, numbered as in `Ways`, is node
-    1 + owner), then the pairs of owner and place.
+    Nodes are numbered in this order: the depot (0), the robots, the tasks, then the pairs of owner
+    and place. So the robot or task with owner number n (see `Ways`) is node 1 + n.
 
     Parameters
     ----------

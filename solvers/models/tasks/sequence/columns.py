@@ -77,7 +77,7 @@ def solve(
         The problem.
     limits
         `deterministic_s` and `gap` apply. Default: none; the routes are then optimal unless too
-        many routes are within the last gap.
+        many routes could be part of a better plan to list them all.
     seed
         Seed of HiGHS. Default 0.
     start

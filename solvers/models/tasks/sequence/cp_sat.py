@@ -54,10 +54,10 @@ def solve(
 
     Returns
     -------
-    The routes, never worse than the start. The bound is valid for all arcs: it is that of
-    `relaxed_bound`, or the solver's if that is better and all arcs were considered. With fewer
-    arcs, the status is OPTIMAL only if the bound proves the routes optimal, otherwise FEASIBLE, or
-    LIMIT if there are no routes.
+    The routes, never worse than the start. The bound holds for routes over all arcs of the problem,
+    even if `ways` lacks some: it is that of `relaxed_bound`, or the solver's if that is better and
+    all arcs were considered. If some were not, the status is OPTIMAL only if the bound proves the
+    routes optimal; otherwise it is FEASIBLE, or LIMIT if no routes were found.
 
     Raises
     ------

@@ -136,9 +136,10 @@ class Routes:
     tasks
         The tasks of each robot in sequence, one tuple per robot.
     place
-        Where the pod of each task is stored, or `NONE` if the task is left, shape (T,).
+        Where the pod of each task is stored, or `NONE` if the task is postponed, shape (T,).
     robot_place
-        Where the pod that each robot carries is stored first, or `NONE` without one, shape (R,).
+        Where each robot stores the pod that it carries initially, or `NONE` if it carries none,
+        shape (R,).
     """
 
     tasks: tuple[tuple[int, ...], ...]

@@ -122,7 +122,7 @@ class Master:
         }
 
     def forbid_repeats(self, places: set[int]) -> None:
-        """Drop the routes that use one of the given places more than once."""
+        """Exclude known routes that use one of the given places more than once."""
         for which, route in enumerate(self.routes):
             if route.repeats & places:
                 self._solver.changeColBounds(self._first + which, 0.0, 0.0)

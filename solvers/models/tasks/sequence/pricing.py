@@ -65,7 +65,7 @@ class Found(NamedTuple):
     bound
         Lower bound on the cost of every route of the robot, in parts of a tick.
     routes
-        Routes below the requested cost, the cheapest first.
+        Routes that cost less than the given limit, the cheapest first.
     complete
         Whether the search was exhaustive, not ended by a limit.
     """

@@ -105,7 +105,7 @@ def arrivals_s(data: TaskSequence, routes: Routes) -> NDArray[np.float64]:
 
 
 def objective(data: TaskSequence, routes: Routes) -> float:
-    """Return the cost of driving, weighted lateness and tasks left, in s.
+    """Return the cost of driving, weighted lateness and postponed tasks, in s.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ def without_tasks(data: TaskSequence) -> Routes | None:
 
 
 def first_tasks(data: TaskSequence) -> Routes | None:
-    """Give each robot at most one task, at the least cost of driving, lateness and tasks left.
+    """Give each robot at most one task, at the least cost of driving, lateness and postponement.
 
     At first, every pod is assumed to be stored at its best place, even if other pods are stored
     there, too. Then the places are assigned so that driving is least.
@@ -40,8 +40,8 @@ def first_tasks(data: TaskSequence) -> Routes | None:
 
     Returns
     -------
-    The routes, which may miss time windows and tasks that must be done; None if there are not
-    enough places.
+    The routes, which may violate time windows and lack tasks that must be done; None if there are
+    not enough places.
     """
     ready_s, way_s, _ = from_robots(data)
     arrive_s = np.maximum(ready_s + data.bring_s, data.earliest_s)

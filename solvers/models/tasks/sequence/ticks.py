@@ -43,7 +43,8 @@ class Route(NamedTuple):
 class Ticks:
     """The times of a problem in whole ticks (milliseconds); trips not allowed take `NEVER`.
 
-    The *owner* of a pod is a robot or a task: robot r has the number r, task t the number R + t.
+    The *owner* of a pod to be stored is the robot that carries it initially, or the task that
+    brings it to a station. Robot r has the owner number r, task t has R + t.
 
     Parameters
     ----------
