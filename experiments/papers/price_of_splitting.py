@@ -209,13 +209,13 @@ def even(frame: pd.DataFrame) -> Table:
     decimals = {(name, part): 0 for name in ("slots", "way, s") for part in _PARTS}
     decimals |= {("packer, s per tote", part): 1 for part in _PARTS}
     caption = (
-        "Where split orders break even with whole ones. slots: break-even number of slots "
-        "of the wall, above which splitting picks more units per hour than whole orders, with a "
+        "Where split orders break even with whole ones. slots: break-even number of slots of the "
+        "wall, above which splitting picks more units per hour than whole orders, with a "
         "bootstrap interval over seeds; the smallest wall of the design may stand for smaller "
-        "ones, and inf means none. packer: packer's time per additional tote at which pickers and packers "
-        "together need the same time per unit as with whole orders. way: time to the wall at "
-        "which orders are packed on average as early as with whole orders; a negative time means "
-        "never. packer and way are for a wall with any number of slots, with 95% confidence "
+        "ones, and inf means none. packer: packer's time per additional tote at which pickers and "
+        "packers together need the same time per unit as with whole orders. way: time to the wall "
+        "at which orders are packed on average as early as with whole orders; a negative time "
+        "means never. packer and way are for a wall with any number of slots, with 95% confidence "
         "intervals (Student's t)."
     )
     return Table(rows_frame(rows, f"{DEMAND}, way to the wall"), decimals, caption)
