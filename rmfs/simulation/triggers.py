@@ -63,7 +63,7 @@ class Triggers(Observer):
         self._signal(Trigger.BUNDLE_PROMISED, bundle)
 
     def bundles_released(self, pod: int) -> None:
-        """Signal that the bundles assigned to a pod were released."""
+        """Signal that ROA and TA may now act on the bundles promised to a pod."""
         self._signal(Trigger.BUNDLE_RELEASED, pod)
 
     def bundle_sent(self, bundle: Bundle) -> None:

@@ -85,7 +85,7 @@ THEMES = {
 
 
 def themes_of(layout: Layout, visits: Mapping[str, str]) -> dict[str, Any]:
-    """Return, for each theme, the colours of a layout's stations, tasks, pods, elevators and delay.
+    """Return, by theme, colours of stations, pods, elevators, and robots by task and by delay.
 
     Parameters
     ----------

@@ -213,7 +213,7 @@ def test_measured_planning_cannot_be_copied() -> None:
         ({"pacing.planning.period_s": -1}, "period_s"),
         (
             {"pacing.planning": "fixed=1", "controllers.pp": "whca-n"},
-            "not possible with path planner whca-n",
+            "not possible with the rolling path planner whca-n",
         ),
     ],
 )

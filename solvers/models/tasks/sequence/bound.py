@@ -73,8 +73,8 @@ def from_robots(
     -------
     Three arrays, in s, infinite for drives that are not allowed: the time at which each robot can
     be at each pod, shape (R, T); its drive there less its storing drive, shape (R, T); and its
-    storing drive, shape (R,). The storing drive takes the pod that the robot carries to the nearest
-    place; it is 0 for a robot without a pod.
+    storing drive, shape (R,). The storing drive is the drive to the nearest place with the
+    pod that the robot is carrying (0 if it carries none).
     """
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
     stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)
