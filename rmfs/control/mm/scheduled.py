@@ -58,7 +58,7 @@ class ScheduledParameters(Parameters):
 class Scheduled(MethodManagement[ScheduledParameters]):
     """Exchanges controllers of any problem at given times.
 
-    The rules of one entry are installed together. Parameters that are not given have their
+    The rules of one exchange are installed together. Parameters that are not given have their
     defaults.
     """
 

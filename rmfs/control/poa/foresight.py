@@ -35,7 +35,7 @@ class ForesightParameters(Parameters):
 
 
 class Foresight(Filling[ForesightParameters]):
-    """Assigns the pair of a station and an order with the highest score, then the next such pair.
+    """Assigns the station-order pair that has the highest score, then the next pair, and so on.
 
     Ties are broken by the secondary score, then in favour of the station with the most free slots,
     the station with the lowest number, and the order that arrived first. In the scores

@@ -34,10 +34,11 @@ class LinearParameters(FastLaneParameters):
 
 
 class Linear(Filling[LinearParameters]):
-    """Fills free slots, each time by the best pair of a station and an order that stock can serve.
+    """Fills free slots, each by the order with the greatest weighted sum of features.
 
-    Orders for the fast lane, unless this is switched off, come first. Ties go to the order that
-    arrived first, then to the station with the lowest number.
+    Of all pairs of a station with a free slot and an order that stock can serve, the one with the
+    greatest sum is chosen. Orders for the fast lane, unless this is switched off, come first. Ties
+    go to the order that arrived first, then to the station with the lowest number.
     """
 
     parameters_model = LinearParameters

@@ -18,9 +18,9 @@ class LinesInCommon(BestPair[PairParameters]):
     """Groups orders for the same SKUs at a station; the best pair of order and station comes first.
 
     The score of a pair is the sum, over the lines of the order, of the number of orders at the
-    station with a line for the same SKU, whether picked or not. The pair with the highest score is
-    assigned, then the next, until no slot is free. Ties are broken by the tie-breaker, then by
-    arrival, then by station number.
+    station with a line for the same SKU, even if that line has been picked. The pair with the
+    highest score is assigned, then the next, until no slot is free. Ties are broken by the
+    tie-breaker, then by arrival, then by station number.
     """
 
     parameters_model = PairParameters

@@ -70,7 +70,7 @@ class OrderRule(Filling[OrderRuleParameters]):
 class RandomOrder(OrderRule):
     """Fills free slots with orders drawn at random.
 
-    Source: rule "Default" of RAWSim-O with random order.
+    Source: rule "Default" of RAWSim-O with a random choice of orders.
     """
 
     def choose_order(self) -> Order | None:
@@ -224,10 +224,10 @@ class FrequencyAge(OrderRule):
     """Fills free slots with old orders for frequently ordered SKUs.
 
     The order with the highest product of age and frequency comes first. The age of the oldest of
-    the B orders in the backlog is 1, and each later order is younger by 1/B. The frequency of an
-    order is the mean, over its lines, of the number of units of the line's SKU that have been
-    ordered so far, including before the run. Ties go to the order that arrived first. Source: rule
-    "Default" of RAWSim-O with frequency and age.
+    the B orders in the backlog is 1; in sequence of arrival, each is younger by 1/B than the one
+    before. The frequency of an order is the mean, over its lines, of the number of units of the
+    line's SKU that have been ordered so far, including before the run. Ties go to the order that
+    arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
     """
 
     def __init__(

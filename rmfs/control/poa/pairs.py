@@ -28,7 +28,7 @@ Q = TypeVar("Q", bound=PairParameters)
 
 
 class BestPair(Filling[Q]):
-    """Assigns the pair of a station and an order with the highest score, then the next such pair.
+    """Assigns the station-order pair that has the highest score, then the next pair, and so on.
 
     Ties are broken by the tie-breaker, then by arrival, then by station number.
     """

@@ -24,8 +24,9 @@ class Related(Filling[RelatedParameters]):
     """Groups orders for the same SKUs, so that a pod serves several of them.
 
     Orders are taken by arrival; those that stock cannot serve are skipped. An order goes to the
-    station with the highest sum, over the orders there, of the number of SKUs in common, whether
-    picked or not. Ties are broken by the tie-breaker, then by station number.
+    station with the highest sum, over the orders there, of the number of SKUs in common with it,
+    including SKUs already picked for them. Ties are broken by the tie-breaker, then by station
+    number.
     """
 
     parameters_model = RelatedParameters

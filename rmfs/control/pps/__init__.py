@@ -40,8 +40,8 @@ class LateBinding(Parameters):
     """Whether new bundles are added to a pod that is already on its way to their station."""
     consider: Requests = "assigned-and-completable"
     """Orders for which pods are brought. `assigned`: orders assigned to the station.
-    `assigned-and-completable`: also orders queued there that the pod completes.
-    `assigned-and-queued`: also all orders queued there."""
+    `assigned-and-completable`: also orders of the station's pool that the pod completes.
+    `assigned-and-queued`: also all orders of its pool."""
     reserve: Requests = "assigned-and-completable"
     """Orders whose units are bound to a pod when it is brought. The values are those of `consider`;
     the orders must include those of `consider`."""

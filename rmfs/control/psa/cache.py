@@ -30,7 +30,8 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
     The station is the one nearest to the pod by Euclidean distance, even if the pod comes from a
     replenishment station. Two shares decide whether the pod deserves a place in this station's
     cache: the share of the cache that is free, and the share of the pods in the cache that have a
-    lower score than this pod. The weighted mean of the two must be above a threshold.
+    lower score (weighted sum of utility and speed) than this pod. The weighted mean of the two
+    shares must be above a threshold.
 
     A pod that deserves a place is stored in this cache; if that is full, outside all caches; if all
     locations outside are occupied, too, in another cache. Any other pod is stored outside all

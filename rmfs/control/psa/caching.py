@@ -21,7 +21,8 @@ class CacheParameters(ScoreWeights, ZoneParameters):
     """Parameters of rules that decide which pods belong in a cache."""
 
     speed_weight: Weight = 0.0
-    """Weight of a pod's speed: the total popularity of its units, relative to the best pod."""
+    """Weight of a pod's speed: the sum, over its units, of how often their SKU is ordered, relative
+    to the best pod."""
     fill_weight: Weight = 1.0
     """Weight of the share of the cache that is free."""
     value_weight: Weight = 1.0

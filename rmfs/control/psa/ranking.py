@@ -30,7 +30,8 @@ class ScoreWeights(Parameters):
     """Weight of a pod's utility: the number of its units that orders need, relative to the best
     pod."""
     speed_weight: Weight = 1.0
-    """Weight of a pod's speed: the total popularity of its units, relative to the best pod."""
+    """Weight of a pod's speed: the sum, over its units, of how often their SKU is ordered, relative
+    to the best pod."""
 
     @pydantic.model_validator(mode="after")
     def _something_counts(self) -> ScoreWeights:
@@ -43,7 +44,7 @@ class RankParameters(ScoreWeights):
     """Parameters of rules that rank pods and places."""
 
     place_buffer: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.05
-    """Additional places over which the pods are spread, as a share of all places."""
+    """The pods are spread over as many places as there are pods, plus this share of all places."""
     corridor: Annotated[int, pydantic.Field(ge=1)] = 3
     """Minimum number of ranks that are searched: the target, the next better, the next worse,
     ..."""

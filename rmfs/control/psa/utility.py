@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 class Utility(PodStorageAssignment[RankParameters]):
     """Ranks pods by score and places by prominence, and chooses a place of the matching rank.
 
-    Places are storage locations; the most prominent one is nearest to a pick station. The rule
-    searches ranks outward from the pod's target rank. Of the empty places found, it chooses the one
-    with the least travel time from the robot; ties go to the lowest waypoint number.
+    Places are storage locations; the most prominent one is nearest to a pick station. A pod's
+    target rank is the rank of the place that corresponds to the pod's position among all pods. The
+    rule searches ranks outward from it. Of the empty places found, the one with the least travel
+    time from the robot is chosen; ties go to the lowest waypoint number.
     """
 
     parameters_model = RankParameters

@@ -61,10 +61,10 @@ class Cache(Pausing[CacheMoveParameters]):
     serve the most units that the station's orders need; it has the most units in demand; it is the
     fullest; its move is the shortest, compared for at most 32 pairs of station and pod.
 
-    If fewer are free, a pod of the cache is moved out: on the robot's tier if possible; then the
-    one with the fewest units that the station's orders need; the fewest units in demand; the
-    emptiest; the nearest to a pick station. It goes to the nearest storage location outside all
-    zones or, if the pod is almost empty, to the one nearest to a replenishment station.
+    If fewer are free, a pod of the cache is moved out. The criteria are: it is on the robot's tier;
+    it has the fewest units that the station's orders need; it has the fewest units in demand; it is
+    the emptiest; it is the nearest to a pick station. It goes to the nearest storage location
+    outside all zones or, if it is almost empty, to the one nearest to a replenishment station.
 
     Moves into a cache come before moves out of a cache. Lengths of moves are Manhattan distances;
     distances to a station are travel times. Remaining ties go to the pod with the lowest number,

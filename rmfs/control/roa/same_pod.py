@@ -57,9 +57,8 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
 
     With `break_batches`, bundles are sent one by one. A bundle goes to the station to which the
     previous bundle for its pod was sent. If that station has no room or is switched off, the bundle
-    goes to the nearest other station, seen from there, that has room. If there was no previous
-    bundle, the parameter `station` decides. Bundles that fit nowhere wait, without blocking later
-    bundles.
+    goes to the station with room that is nearest to that one. If there was no previous bundle, the
+    parameter `station` decides. Bundles that fit nowhere wait, without blocking later bundles.
     """
 
     parameters_model = SamePodParameters

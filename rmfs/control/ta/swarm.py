@@ -46,7 +46,8 @@ class SwarmParameters(SoloParameters):
     growth_limit: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 30.0
     """Maximum of the multiplier of a station's stimulus."""
     rest_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """Share of stations without stimulus above which robots may draw rest instead of a station."""
+    """Robots may draw rest instead of a station if more than this share of the stations has no
+    stimulus."""
     other_stations: bool = False
     """Whether a pod that has been served may continue to another station nearby."""
     search_radius_m: NotNegative = 5.0

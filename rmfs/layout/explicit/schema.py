@@ -148,7 +148,7 @@ class ExplicitLayout(Strict):
         default_factory=list, description="stations where units are picked"
     )
     replenishment_stations: list[ExplicitReplenishmentStation] = Field(
-        default_factory=list, description="stations where bundles are stored"
+        default_factory=list, description="stations where bundles are put into pods"
     )
     other_stations: dict[str, ExplicitOtherStations] = Field(
         default_factory=dict, description="stations of further kinds, by name of the kind"

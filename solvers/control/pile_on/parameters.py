@@ -31,24 +31,26 @@ class JointParameters(SearchParameters):
     """With `split`, cost of an additional tote of an order, in seconds of a robot: an order is
     split only if it would cost more to call pods that can serve it whole now."""
     later: bool = False
-    """Whether a whole order may take a slot while pods for some of its lines are still to come."""
+    """Whether an order may take a slot before pods are called for all of its lines; not possible
+    with `split`."""
     open_line_s: NotNegative = 100.0
-    """With `later`, cost of each line whose pod is still to come, in seconds of a robot."""
+    """With `later`, cost of each line for which no pod is called yet, in seconds of a robot."""
     when_needed: bool = True
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
     whenever a slot can be filled, as in the model M1G and the heuristic HADGS of Jiao et al."""
     horizon_s: NotNegative = 90.0
     """Seconds of work below which a station needs another pod."""
     by_work: bool = False
-    """Whether pods are called only for stations with less work under way than the horizon, whatever
-    their orders lack. This prevents queues at one station while another runs out of work."""
+    """Whether pods are called only for stations with less work under way than the horizon, even if
+    orders at other stations still lack pods. This prevents queues at one station while another runs
+    out of work."""
     buffer_s: NotNegative = 3.0
     """Minimum seconds between two questions, so that one question covers several decisions."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
     """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
     reward_s: NotNegative = 15.0
-    """Value of each additional order (if orders are split: line) that a visit serves, in seconds
-    of a robot."""
+    """Value of each order (if orders are split: of each line) that the pods of one station
+    (present, under way or called) can serve completely, in seconds of a robot."""
     unit_s: NotNegative = 0.0
     """Additional value of each unit of an order rewarded by `reward_s`, in seconds of a robot."""
     visit_s: NotNegative = 60.0

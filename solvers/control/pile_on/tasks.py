@@ -49,12 +49,13 @@ class PileOnTasksParameters(JointParameters):
 
     when_needed: bool = False
     """Whether pods are called only for stations that run out of work within the horizon; otherwise
-    whenever a slot can be filled, as in M1G."""
+    whenever a slot can be filled, as in the model M1G of Jiao et al. (2025)."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 0
     """Number of slots per station that are reserved for orders that the pod at the head of the
     station's queue can serve."""
     reward_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 40.0
-    """Value of each additional order that a visit serves, in seconds of a robot."""
+    """Value of each order (if orders are split: of each line) that the pods of one station
+    (present, under way or called) can serve completely, in seconds of a robot."""
     visit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
     """Cost of a visit in addition to the trips, in seconds of a robot."""
     age_reward: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
@@ -82,13 +83,13 @@ _ASKS: dict[Trigger, AsksTasks] = {
 class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     """Asks a model which orders take slots, which pods come, and which robots fetch them.
 
-    The model is asked, at most once per `buffer_s`, after the events in `triggers`, provided that a
-    slot is free or a request open for which nothing is planned. It may use the robots without a
-    task. Its answer is stored as a plan and carried out as in POA pile-on; if the robot chosen for
-    a called pod is no longer free, the nearest free robot fetches the pod.
+    The model is asked, at most once per `buffer_s`, after the events in `triggers`, if there is a
+    free slot or an open request for which nothing is planned. It may use the robots without a task.
+    Its answer is stored as a plan and carried out as in POA pile-on; if the robot chosen for a
+    called pod is no longer free, the nearest free robot fetches the pod.
 
-    Decisions outside M1G are made by rules. A robot keeps its pod at the station while there is
-    work for the pod, then (with `other_stations`) takes it to pick stations nearby that it can
+    All other decisions are made by rules. A robot keeps its pod at the station while there is work
+    for the pod, then (with `other_stations`) takes it to pick stations nearby that the pod can
     serve, and finally parks it where PSA says. Up to `replenishment_share` of the robots bring pods
     to replenishment stations: each goes to the nearest one with work, with a pod chosen by PPS
     lexicographic. Robots that get no task rest. If the optimiser fails, its method `greedy`

@@ -49,8 +49,9 @@ class PlanningParameters(SearchParameters):
     late_s: NotNegative = 0.0
     """Additional value of completing an order that is due, in seconds of a robot, times the weight
     of its class. Before the due time, the value is smaller: by the factor e for every
-    `late_within_s` that is left. As later visits count less (`decay`), this is the price of
-    tardiness (apparent tardiness cost, Vepsalainen and Morton 1987). 0: due times do not count."""
+    `late_within_s` that is left. As later visits count less (`decay`), serving the order later
+    costs part of this value (apparent tardiness cost, Vepsalainen and Morton 1987). 0: due times do
+    not count."""
     late_within_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 300.0
     """Seconds before the due time at which the value `late_s` is smaller by the factor e. It should
     be about as long as the time from a plan to its last visit."""
@@ -75,13 +76,15 @@ class PlanningParameters(SearchParameters):
     """With `expected_s`, value of serving all orders of a draw, as a share of their value if they
     were waiting."""
     stock_floor: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.6
-    """Used share of the space on pods below which some robots always bring pods to replenishment
-    stations; above it, only robots that no pick station needs do so."""
+    """While less than this share of the space on pods is used, some robots (`bundle_share`) always
+    bring pods to replenishment stations; otherwise, only robots that no pick station needs do
+    so."""
     stock_ceiling: Annotated[float, pydantic.Field(ge=0, le=1)] = 1.0
-    """Used share of the space on pods from which robots no longer set out for replenishment
-    stations, so that they are available when a pick station needs them."""
+    """While at least this share of the space on pods is used, no robot sets out for a replenishment
+    station, so that robots are available when a pick station needs them."""
     bundle_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.15
-    """Share of the robots, at least one, that bring pods for bundles below `stock_floor`."""
+    """Share of all robots (at least one robot) that bring pods to replenishment stations while the
+    stock is below `stock_floor`."""
     robots_per_station: Count = 9
     """Maximum number of robots at, or on their way to, one pick station."""
     rest: RestRule = "nearest"

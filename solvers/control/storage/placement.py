@@ -76,7 +76,7 @@ class PlacementParameters(StorageParameters):
 class PlacementControl(Ahead[PlacementParameters]):
     """Weighs the trip of storing each pod against the trips of its expected visits.
 
-    It solves a linear assignment problem of all pods that robots carry and all empty places.
+    All pods that robots carry are assigned to empty storage locations (linear assignment problem).
     """
 
     parameters_model = PlacementParameters

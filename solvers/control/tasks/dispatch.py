@@ -89,9 +89,9 @@ class DispatchControl(Asking[DispatchParameters]):
     """Assigns robots to stations; PPS chooses the pods that they bring.
 
     There are two kinds of tasks. A carried pod can be taken to any station that it can serve.
-    A robot without a pod can bring one to a station with work; each station has one such task for
-    each robot without a pod, but no more tasks than further robots may come
-    (`robots_per_station`), and no more than it has open units or waiting bundles.
+    A robot without a pod can bring one to a station with work. A station has as many tasks of this
+    kind as there are robots without a pod, but not more than it has open units or waiting bundles,
+    and not more than the number of further robots that may come (`robots_per_station`).
     With `matching`, total travel time is minimised (linear assignment). With `balance`, waiting
     behind other pods and lateness of orders count as well (minimum-cost flow). Tasks that are not
     worth the trip are left out: pods are parked, and robots rest.

@@ -136,10 +136,10 @@ class RoutesControl(Asking[RoutesParameters]):
     """Plans routes in which robots store and fetch pods, and lets each robot take the first step.
 
     The robots are those that need a task, are at rest, are storing a pod, or are being served at a
-    station. The tasks are the best next pods of every station, each due when its station
-    runs out of work. The objective combines driving, lateness and the value of tasks left undone: a
-    pod is stored where the trip there and on to the next pod is short, not at the nearest place.
-    The plan is renewed whenever a robot needs a task.
+    station. Their tasks are to bring to every station the best next pods for it; each is due when
+    the station runs out of work. The objective combines driving, lateness and the value of tasks
+    left undone: a pod is stored where the trip there and on to the next pod is short, not at the
+    nearest place. The plan is renewed whenever a robot needs a task.
 
     A pod whose station has more work for it stays there. The routes determine pods and places, so
     PPS and PSA must be `dummy`. Without an answer, pods go to the nearest empty place.
