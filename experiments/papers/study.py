@@ -48,8 +48,8 @@ class Study:
     published
         Folder for tables and pictures.
     suffix
-        Suffix of the names of tables and pictures: "-reference" if an original layout was used
-        instead of its twin, "-smoke" if runs are short.
+        Suffix of the names of tables and pictures: "-reference" if RAWSim-O's own layout was
+        used instead of our generated layout of the same size, "-smoke" if runs are short.
     """
 
     plan: Plan
