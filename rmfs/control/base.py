@@ -91,9 +91,9 @@ class Controller(Generic[P]):
         controllers that ask optimisers.
     goes_on
         Whether `answered` continues where it stopped (`Call.left`) if it is called again with the
-        same call, after a question to a program outside the simulation interrupted it. With a TA
-        rule that asks optimisers, PPS, PSA and repositioning can be decided outside the simulation
-        only if this is true.
+        same call, after a question to a program outside the simulation interrupted it. If
+        the TA rule asks optimisers, this must be true for PPS, PSA and repositioning to be decided
+        outside the simulation.
     looks_ahead
         Whether it needs the attribute `lookahead`, with which it can try out decisions.
     in_flight

@@ -47,7 +47,7 @@ _MADE: Mapping[str, Callable[[Any], Any]] = {
 
 
 def question_of(question: object) -> Decision | None:
-    """Convert a question of a run to a `Decision`; None if no family covers questions of its kind."""
+    """Convert a question of a run to a `Decision`; None if no family covers its data."""
     data = getattr(question, "data", None)
     family = family_of(data)
     if data is None or family is None:
