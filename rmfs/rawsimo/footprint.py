@@ -106,7 +106,8 @@ def _counts() -> list[Mapped]:
         Mapped("Collisions", "`collisions`, counted by the independent checker of the trace"),
         Mapped(
             "FailedReservations",
-            "`plan_failures`: failed plans of whole routes; routes are not reserved in segments",
+            "`plan_failures`: searches that found no route; reservations of single segments are "
+            "not counted",
         ),
         Mapped(
             "PathPlanningTimeouts", "none: planning is limited by counted work, not by wall time"
