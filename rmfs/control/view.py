@@ -142,7 +142,7 @@ class View:
 
     @property
     def split_orders(self) -> Mapping[int, Order]:
-        """Split orders with units still to be picked, by index."""
+        """The split orders of which units are still to be picked, by index."""
         return self._world.split_orders
 
     @cached_property

@@ -237,7 +237,7 @@ class FrequencyAge(OrderRule):
         self._frequency = view.trackers.get(Frequency)
 
     def choose_order(self) -> Order | None:
-        """Choose the order with the highest product; None if stock can serve none."""
+        """Choose the order for which age times frequency is highest; None if stock serves none."""
         rows = self.servable_rows()
         if not len(rows):
             return None

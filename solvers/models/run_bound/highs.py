@@ -24,7 +24,7 @@ def solve(
     seed: int = 0,
     start: Throughput | None = None,
 ) -> Solution[Throughput]:
-    """Return an upper bound on the units per hour of every run, and the counts behind it.
+    """Return an upper bound on the units per hour of any run, and the point that reaches it.
 
     Parameters
     ----------
