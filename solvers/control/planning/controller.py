@@ -112,7 +112,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             yield self._to_rest(robot)
 
     def answered(self, call: Call) -> Iterator[Decision]:
-        """Store the plan and carry out what is due; robots without work wait for the next `decide`."""
+        """Store the plan and carry out what is due; robots without work wait for `decide`."""
         memo: snapshot.Memo = call.ask.memo
         if call.solution is not None:
             self._plan.take(call.solution, memo, call)
