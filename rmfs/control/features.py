@@ -13,6 +13,7 @@ import numpy as np
 
 from rmfs.control.candidates import MEANINGS
 from rmfs.control.problems import Problem
+from rmfs.control.task_candidates import MOVE, REST, STORE, WORK
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -64,7 +65,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
 }
 """The features of each kind of question: columns of its candidates, or keys of `OWN_MEANINGS`."""
 
-_KIND_OF_TASK = {"work": 0, "store": 1, "move": 2, "rest": 3}
+_KIND_OF_TASK = {"work": WORK, "store": STORE, "move": MOVE, "rest": REST}
 """Features of tasks, by name: 1 if the column `kind` has this value."""
 
 SCALES: dict[str, float] = {
