@@ -61,15 +61,18 @@ impl Swift {
         let Some(unhindered) = pathfinder.aim(network, &query) else { return Outcome::NoWay };
         let (weight, labels) = self.first;
         let labels = labels + self.per_second * (unhindered / 1_000_000) as u64;
+        let row = table.row(network.resource[query.goal as usize]);
+        let goal_free = row.last().map_or(0, |last| last.end);
         if urgency == Urgency::Try {
+            if goal_free > query.ready + unhindered + self.detour_to_try {
+                return Outcome::NoWay; // any way is too late
+            }
             query.detour = self.detour_to_try;
             let labels = self.labels_to_try.min(query.budget);
             return pathfinder.seek(network, table, &query, weight, labels);
         }
         let earliest = query.ready;
         // who would have to wait for the goal to be free starts in time for that
-        let row = table.row(network.resource[query.goal as usize]);
-        let goal_free = row.last().map_or(0, |last| last.end);
         let in_time = earliest.max(goal_free - unhindered - self.wait);
         query.ready = if in_time < until { in_time } else { earliest };
         let mut outcome = pathfinder.seek(network, table, &query, weight, labels.min(query.budget));

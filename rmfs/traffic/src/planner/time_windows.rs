@@ -248,4 +248,37 @@ mod tests {
         assert_eq!(tried(Urgency::Try), Outcome::NoWay);
         assert!(matches!(tried(Urgency::Soon), Outcome::Found(_)));
     }
+
+    #[test]
+    fn an_optional_way_to_a_goal_that_is_free_too_late_is_not_searched_for() {
+        let network = row();
+        let tried = |free_s: Us| {
+            let mut table = Table::new(network.resources);
+            table.insert(5, Interval { start: 0, end: free_s * 1_000_000, robot: 1 }, -1);
+            let kinds = [KIND];
+            let costs = Cache::new(&network, &kinds, 1_000_000);
+            let query = Query {
+                start: 0,
+                heading: 0,
+                ready: 0,
+                goal: 5,
+                loaded: false,
+                stored: &[],
+                kind: &KIND,
+                model: &costs.models[0],
+                budget: 300,
+                end: End::ForGood,
+                detour: FOREVER,
+                guide: Guide::Exact,
+                times: None,
+            };
+            let mut finder = Pathfinder::new(&network);
+            let swift = Swift::FOR_BIG_FLEETS;
+            let tried = swift.search(&mut finder, &network, &table, &query, FOREVER, Urgency::Try);
+            (matches!(tried, Outcome::Found(_)), finder.expansions > 0)
+        };
+        // unhindered, the way takes 6.3 s; 20 s more are accepted
+        assert_eq!(tried(20), (true, true));
+        assert_eq!(tried(27), (false, false));
+    }
 }
