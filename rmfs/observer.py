@@ -34,10 +34,6 @@ class MotionCounts(TravelTimes, Protocol):
         """Return arrays of distances (m) and times (s), one value per robot, by name."""
         ...
 
-    def heat(self) -> dict[str, NDArray[Any]]:
-        """Return, by name, arrays with the visits and waiting times (s) of robots at waypoints."""
-        ...
-
     def trips(self) -> dict[str, NDArray[Any]]:
         """Return the completed trips as columns by name."""
         ...

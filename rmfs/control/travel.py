@@ -42,6 +42,10 @@ class TravelTimes(Protocol):
         """Return where a robot stands, or the next waypoint at which it stops."""
         ...
 
+    def heat(self) -> dict[str, NDArray[Any]]:
+        """Return, by name, arrays with the visits and waiting times (s) of robots at waypoints."""
+        ...
+
 
 class TravelTables:
     """Cached travel times and distances, shared by a run and the copies of it made for trials.
@@ -239,3 +243,12 @@ class Travel:
     def robot_waypoint(self, robot: int) -> int:
         """Return where a robot stands, or the next waypoint at which it stops."""
         return self._times.robot_waypoint(robot)
+
+    def passages(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Return how often robots passed each waypoint, and how long they stood there, in s, (N,).
+
+        Robots without a destination, and pods at stations, do not count. Counts start at time zero
+        and again at the end of the warm-up.
+        """
+        counted = self._times.heat()
+        return counted["visits"], counted["waiting_s"]

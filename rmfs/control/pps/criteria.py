@@ -8,6 +8,7 @@ import numpy as np
 import pydantic
 
 from rmfs.control.base import Parameters
+from rmfs.control.congestion import CongestionParameters
 from rmfs.control.pps.requests import RequestValue, value_of
 from rmfs.control.trackers.pod_scores import DemandOnPods, demand
 from rmfs.control.travel import Metric
@@ -55,8 +56,11 @@ class RandomCriterion(PodCriterion):
         return scores - candidates.other_tiers() if self.prefer_same_tier else scores
 
 
-class Nearest(PodCriterion):
-    """Prefers the pod with the shortest trip from the robot to the pod and on to the station."""
+class Nearest(CongestionParameters, PodCriterion):
+    """Prefers the pod with the shortest trip from the robot to the pod and on to the station.
+
+    The delay that congestion is expected to cause on both trips can be added to the travel time.
+    """
 
     criterion: Literal["nearest"] = "nearest"
     metric: Metric = "time"
@@ -68,12 +72,20 @@ class Nearest(PodCriterion):
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Return minus the travel time in s, or minus the distance in m."""
         if self.metric == "time":
-            return -_seconds(candidates, self.estimate, estimate_station=False)
+            seconds = _seconds(candidates, self.estimate, estimate_station=False)
+            return -seconds - self._delay_s(candidates) if self.congestion else -seconds
         travel, pods = candidates.view.travel, candidates.waypoints()
         robot = travel.robot_waypoint(candidates.robot.index)
         station = candidates.station.waypoint
         from_robot = travel.between(robot, pods, self.metric, loaded=False)
         return -(from_robot + travel.distances_to(station, self.metric)[pods])
+
+    def _delay_s(self, candidates: Candidates) -> NDArray[np.float64] | float:
+        """Return the expected delay on the way to each pod and on to the station, shape (n,)."""
+        view, pods = candidates.view, candidates.waypoints()
+        robot = view.travel.robot_waypoint(candidates.robot.index)
+        to_pod = self.delay_s(view, robot, pods)
+        return to_pod + self.delay_s(view, candidates.station.waypoint, pods)
 
 
 class Fill(PodCriterion):

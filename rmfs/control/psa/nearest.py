@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.base import Parameters
+import pydantic
+
+from rmfs.control.congestion import CongestionParameters
 from rmfs.control.psa import PodStorageAssignment
 from rmfs.control.psa.distances import PlaceDistances
 from rmfs.control.travel import Metric
@@ -16,18 +18,25 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 
-class NearestParameters(Parameters):
+class NearestParameters(CongestionParameters):
     """Parameters of PSA nearest."""
 
     metric: Metric = "time"
     """Measure of distance: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded
     robot drives) or `time` (s, unhindered)."""
 
+    @pydantic.model_validator(mode="after")
+    def _seconds_only(self) -> NearestParameters:
+        if self.congestion and self.metric != "time":
+            raise ValueError("congestion: needs metric = 'time'")
+        return self
+
 
 class Nearest(PodStorageAssignment[NearestParameters]):
     """Chooses the nearest empty storage location, by default the one with the least travel time.
 
-    Ties go to the waypoint with the lowest number.
+    The delay that congestion is expected to cause on the way can be added to the travel time
+    (`congestion`). Ties go to the waypoint with the lowest number.
     """
 
     parameters_model = NearestParameters
@@ -35,7 +44,10 @@ class Nearest(PodStorageAssignment[NearestParameters]):
     def __init__(self, parameters: NearestParameters, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
         self._distances = PlaceDistances(view, parameters.metric)
+        parameters.prepare(view)
 
     def place(self, robot: Robot) -> int:
         """Find the empty storage location nearest to the robot; -1 if there is none."""
-        return self.least(self._distances.away(robot.waypoint), self.view.storage.is_empty)
+        storage, here = self.view.storage, robot.waypoint
+        delay_s = self.parameters.delay_s(self.view, here, storage.places)
+        return self.least(self._distances.away(here) + delay_s, storage.is_empty)

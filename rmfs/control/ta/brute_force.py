@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple
 import numpy as np
 import pydantic
 
+from rmfs.control.congestion import CongestionParameters
 from rmfs.control.decisions import Park, Prepare, TaskDecision
 from rmfs.control.problems import Problem
 from rmfs.control.ta.solo import Solo, SoloParameters
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 
-class BruteForceParameters(SoloParameters):
+class BruteForceParameters(CongestionParameters, SoloParameters):
     """Parameters of TA brute-force."""
 
     queue_cost_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
@@ -46,9 +47,10 @@ class BruteForce(Solo[BruteForceParameters]):
     least estimated time until service is chosen. The estimate is the sum of three terms: the time
     of the straight trip from robot to pod at top speed; the time to lift the pod (and to set
     down the carried one); and the longer of the unhindered trip to the station and the expected
-    wait there. For the carried pod, only the last term counts. Ties go to the carried pod, then to
-    the station and the pod with the lowest number. All robots look for picks until there are none,
-    then for bundles until there are none, and so on.
+    wait there. The delay that congestion is expected to cause on both trips can be added
+    (`congestion`). For the carried pod, only the last term counts. Ties go to the carried pod, then
+    to the station and the pod with the lowest number. All robots look for picks until there are
+    none, then for bundles until there are none, and so on.
 
     If the best pod is not the carried one, the robot first parks the carried pod, then fetches the
     best one. It parks at the empty storage location on the quickest way to the best pod: the sum of
@@ -66,6 +68,7 @@ class BruteForce(Solo[BruteForceParameters]):
         self, parameters: BruteForceParameters, view: View, rng: np.random.Generator
     ) -> None:
         super().__init__(parameters, view, rng)
+        parameters.prepare(view)
         self._picks = True
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
@@ -131,6 +134,7 @@ class BruteForce(Solo[BruteForceParameters]):
         seconds = view.travel.metres(where, view.storage.pod_waypoint)
         seconds /= kind.top_speed_m_s
         seconds += transfers
+        seconds += self.parameters.delay_s(view, where, view.storage.pod_waypoint)
         return seconds
 
     def _jobs(
@@ -148,7 +152,9 @@ class BruteForce(Solo[BruteForceParameters]):
                 yield _Job(max(to_station.item(robot.waypoint), wait_s), index, robot.pod)
             pods = self.pods_for(robot, index)
             if len(pods):
-                on_s = np.maximum(to_station[view.storage.pod_waypoint[pods]], wait_s)
+                at = view.storage.pod_waypoint[pods]
+                bring_s = to_station[at] + self.parameters.delay_s(view, waypoint, at)
+                on_s = np.maximum(bring_s, wait_s)
                 seconds = to_pods[pods] + on_s
                 best = int(seconds.argmin())
                 yield _Job(float(seconds[best]), index, int(pods[best]))

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.solvers.control.items import Item
     from rmfs.world.orders import Order
+    from rmfs.world.robots import Robot
     from rmfs.world.stations import PickStation
 
 
@@ -91,7 +92,13 @@ class Plan:
         orders = [item.order for item in planned if item.line is not None]
         return Splitting(self._view, self._split_orders, orders, pays)
 
-    def extend(self, solution: Mapping[str, Any], items: Sequence[Item], call: Call | None) -> None:
+    def extend(
+        self,
+        solution: Mapping[str, Any],
+        items: Sequence[Item],
+        call: Call | None,
+        robots: Sequence[Robot] = (),
+    ) -> None:
         """Add the valid parts of a solution; count the rest as stale.
 
         Parameters
@@ -104,11 +111,15 @@ class Plan:
         call
             The question that the solution answers; None if the optimiser failed and the method
             `greedy` decided.
+        robots
+            Robots behind the indices of the solution; without them, called pods have no robot.
         """
         pod_station, pod_robot = (np.asarray(solution[k]) for k in ("pod_station", "pod_robot"))
         for pod in np.flatnonzero(pod_station >= 0).tolist():
             if self._view.storage.is_at_hand[pod] and not any(pod in pods for pods in self.pods):
-                self.pods[int(pod_station[pod])][pod] = Called(call, int(pod_robot[pod]))
+                number = int(pod_robot[pod])
+                robot = robots[number].index if robots and number >= 0 else -1
+                self.pods[int(pod_station[pod])][pod] = Called(call, robot)
             else:
                 self._stale(call)
         known, splitting = self.keys(), self.splitting()

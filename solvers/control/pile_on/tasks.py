@@ -148,14 +148,9 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         """Add the valid parts of an answer to the plan, and carry it out as far as possible."""
         taken: snapshot.Snapshot = call.ask.memo
         if call.solution is not None:
-            self._plan.extend(call.solution, taken.items, call)
+            self._plan.extend(call.solution, taken.items, call, taken.robots)
         else:
-            self._plan.extend(by_rule(call.ask.question), taken.items, None)
-        robots = [robot.index for robot in taken.robots]
-        for called in self._plan.pods:
-            for pod, (source, number) in called.items():
-                if source is call and number >= 0:
-                    called[pod] = called[pod]._replace(robot=robots[number])
+            self._plan.extend(by_rule(call.ask.question), taken.items, None, taken.robots)
         yield from self._carry_out()
 
     # --- the model ------------------------------------------------------------------------------

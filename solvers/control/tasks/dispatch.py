@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rmfs.control.asks import Answer, Ask
+from rmfs.control.congestion import CongestionParameters
 from rmfs.control.decisions import Park
 from rmfs.control.pps.candidates import pick_candidates, replenishment_candidates
 from rmfs.control.ta.stations import bring, keeper_of
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from rmfs.control.asks import Call
     from rmfs.control.decisions import Prepare, TaskDecision
     from rmfs.control.ta import Consult
+    from rmfs.control.view import View
     from rmfs.world.robots import Robot
 
 Method = Literal["balance", "matching", "greedy"]
@@ -64,7 +66,7 @@ class Memo:
     own: list[bool]
 
 
-class DispatchParameters(TaskParameters):
+class DispatchParameters(CongestionParameters, TaskParameters):
     """Parameters of TA dispatch."""
 
     method: Method = "balance"
@@ -97,11 +99,18 @@ class DispatchControl(Asking[DispatchParameters]):
     worth the trip are left out: pods are parked, and robots rest.
 
     As PPS chooses the pod only later, the time that a robot needs to bring a pod is estimated as
-    the mean over all pods that the station could use.
+    the mean over all pods that the station could use. The delay that congestion is expected to
+    cause can be added to it (`congestion`).
     """
 
     parameters_model = DispatchParameters
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.tasks.dispatch",)
+
+    def __init__(
+        self, parameters: DispatchParameters, view: View, rng: np.random.Generator
+    ) -> None:
+        super().__init__(parameters, view, rng)
+        parameters.prepare(view)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
         """State the assignment as a flow problem."""
@@ -179,8 +188,11 @@ class DispatchControl(Asking[DispatchParameters]):
         if len(pods):
             at = view.storage.pod_waypoint[pods]
             bring_s = view.travel.to(view.stations[number].waypoint, loaded=True)[at]
+            bring_s = bring_s + self.parameters.delay_s(view, station.waypoint, at)
             for row in empty:
-                reach_s = view.travel.estimate_s(robots[row].waypoint, at)
+                here = robots[row].waypoint
+                reach_s = view.travel.estimate_s(here, at)
+                reach_s += self.parameters.delay_s(view, here, at)
                 column[row] = float(np.mean(reach_s + bring_s)) + self._low_s(robots[row])
         return column
 

@@ -161,6 +161,19 @@ def test_orders_pods_and_robots_together(answer: bool) -> None:
     assert others == {robot.index for robot in robots if robot is not near}
 
 
+@pytest.mark.parametrize("answer", [True, False], ids=["optimiser", "heuristic"])
+def test_the_planned_robot_fetches_the_pod(answer: bool) -> None:
+    """Robot 0 is busy, so that the model numbers robots 1 and 2 from 0; 2 is nearer to the pod."""
+    situation = Situation(small_layout(robots=3, places=8, pods=6))
+    situation.stock(5, s1=5)
+    situation.order(s1=1)
+    world = situation.world
+    world.start_reposition(world.robots[0], 0, 7)
+    found = tasks(situation, situation.make(PileOnTasks), answer=answer)
+    (fetch,) = [decision for decision in found if isinstance(decision, BringForPicks)]
+    assert (fetch.robot.index, fetch.pod) == (2, 5)
+
+
 def test_an_order_may_wait_at_its_station_for_a_line() -> None:
     """Its lines are in two pods and there is one robot: M1G as printed leaves the slot empty."""
     for later in (False, True):

@@ -1,0 +1,51 @@
+"""Parameters by which rules take the delay from congestion into account."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.trackers.congestion import Congestion
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rmfs.control.view import View
+
+
+class CongestionParameters(Parameters):
+    """Parameters of rules that can add the delay from congestion to travel times."""
+
+    congestion: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
+    """Weight of the delay that congestion is expected to cause on a trip: 0 ignores it, 1 adds
+    it to the travel time."""
+    congestion_from: Annotated[str, pydantic.Field(min_length=1)] = "recent"
+    """Source of the expected delay: `recent` counts how long robots have waited in each part of the
+    floor, and forgets half of it within seven minutes; `forecast` also considers where robots are
+    going now; otherwise, the path of the table `heat` of an earlier run."""
+
+    def delay_s(
+        self, view: View, waypoint: int, others: NDArray[np.integer]
+    ) -> NDArray[np.float64] | float:
+        """Return the weighted delay on trips from a waypoint to n others, in s, shape (n,) or 0."""
+        if not self.congestion:
+            return 0.0
+        return self.congestion * self.tracker(view).on_trips(waypoint, others)
+
+    def tracker(self, view: View) -> Congestion:
+        """Return the tracker of the delay; rules request it in their constructor.
+
+        Raises
+        ------
+        InputError
+            If `congestion_from` is not a table of a run in this layout.
+        """
+        return view.trackers.get(Congestion, self.congestion_from)
+
+    def prepare(self, view: View) -> None:
+        """Request the tracker if it is needed."""
+        if self.congestion:
+            self.tracker(view)
