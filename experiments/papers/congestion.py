@@ -1,9 +1,9 @@
 """The gain of decisions that know where robots have recently been delayed.
 
-The design `congestion` lets PSA, and TA by linear assignment, add the delay expected from congestion
-to travel times, at two sites with many robots and quick stations. The study publishes the change of
-units per hour, of the delay per trip and of the distance per unit, paired by seed, and the share of
-driving time that is delay: the most that any such decision could save.
+The design `congestion` lets PSA, and TA by linear assignment, add the delay expected from
+congestion to travel times, at two sites with many robots and quick stations. The study publishes
+the change of units per hour, of the delay per trip and of the distance per unit, paired by seed,
+and the share of driving time that is delay: the most that any such decision could save.
 """
 
 from __future__ import annotations
