@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision
 
 _XML = re.compile(r'<variable\s[^>]*?name="([^"]+)"[^>]*?value="([^"]+)"')
+_STATUS = frozenset(("*", "B", "NL", "NU", "NF", "NS"))
+"""Words between name and value in files of GLPK."""
+_NAME_ALONE = re.compile(r"^(\s*\d+ \S+)\n", re.MULTILINE)
+"""Long names have a line of their own in files of GLPK."""
 
 
 def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
@@ -90,8 +94,10 @@ def _pairs(text: str) -> list[tuple[str, float]]:
     if "<variable" in text:
         return [(name, _number(value)) for name, value in _XML.findall(text)]
     found = []
-    for line in text.splitlines():
+    for line in _NAME_ALONE.sub(r"\1 ", text).splitlines():
         words = line.split()
+        if len(words) > 3 and words[2] in _STATUS:
+            del words[2]
         # a name is the first word, or the second behind a number
         for place in range(min(2, len(words) - 1)):
             value = _number(words[place + 1])

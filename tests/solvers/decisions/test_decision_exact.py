@@ -171,6 +171,25 @@ SOLUTIONS = {
     "cplex": '<CPLEXSolution><variables><variable name="send_r0_t1" index="1" value="1"/>'
     '<variable name="send_r1_t0" index="4" value="1"/><variable name="leave_t2" value="1"/>'
     '<variable name="leave_t3" value="1"/></variables></CPLEXSolution>',
+    # as GLPK 5.0 prints, with one of the names made longer than its column
+    "glpk": "Status:     INTEGER OPTIMAL\nObjective:  cost = 25 (MINimum)\n\n"
+    "   No.   Row name        Activity     Lower bound   Upper bound\n"
+    "------ ------------    ------------- ------------- -------------\n"
+    "     1 robot_0                     1             1             = \n\n"
+    "   No. Column name       Activity     Lower bound   Upper bound\n"
+    "------ ------------    ------------- ------------- -------------\n"
+    "     1 send_r0_t0   *              0             0             1 \n"
+    "     2 send_r0_t1\n                    *              1             0             1 \n"
+    "     5 send_r1_t0   *              1             0             1 \n"
+    "    11 leave_t2                    1             0             1 \n"
+    "    12 leave_t3                    1             0             1 \n",
+    "glpk relaxed": "   No. Column name  St   Activity     Lower bound   Upper bound    Marginal\n"
+    "------ ------------ -- ------------- ------------- ------------- -------------\n"
+    "     1 send_r0_t0   NL             0             0             1             2 \n"
+    "     2 send_r0_t1   NU             1             0             1            -1 \n"
+    "     5 send_r1_t0   B              1             0             1 \n"
+    "    11 leave_t2\n                    B              1             0             1 \n"
+    "    12 leave_t3     B              1             0             1 \n",
 }
 
 
