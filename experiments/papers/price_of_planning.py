@@ -1,11 +1,10 @@
 """The cost of planning time: units per hour over the time that a path plan takes.
 
 The design `price-of-planning` varies how long the plan of a trip takes, on two layouts with five
-fleets. All robots share one planner. The study publishes the change of units per hour compared with
-plans that take no time, paired by seed, and for each fleet the time from which planning costs
-throughput. In a design of your own (`--design`), the time of a plan can be determined in other
-ways, planning can begin at other moments (docs: path-planning), and each robot can have its own
-planner (labels that end in ", each").
+fleets: with one planner for all robots, and with a planner for each (labels that end in ", each").
+It also charges the work of our own search, plans only when a robot could depart (lazy), and begins
+plans only every five seconds. The study publishes the change of units per hour compared with plans
+that take no time, paired by seed, and for each fleet the time from which planning costs throughput.
 """
 
 from __future__ import annotations
