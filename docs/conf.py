@@ -41,8 +41,9 @@ suppress_warnings = ["ref.python"]
 
 
 def _links_out(app: object, name: str, source: list[str]) -> None:
-    """Turn links to files beside the documentation into their names: they are not part of it."""
-    source[0] = re.sub(r"\[([^\]]*)\]\(\.\./([^)\s]*)\)", r"\1 (`\2`)", source[0])
+    """Turn links to files outside `docs` into their names, as these files are not published."""
+    outside = r"\.\./" * (name.count("/") + 1)
+    source[0] = re.sub(rf"\[([^\]]*)\]\({outside}([^)\s]*)\)", r"\1 (`\2`)", source[0])
 
 
 def _plain_names(*told: Any) -> None:
