@@ -74,7 +74,10 @@ class Inventory:
         pick_stations: int,
     ) -> None:
         skus, pods = len(unit_space), len(capacity)
-        self._contained = np.zeros((skus, pods), np.int32)
+        # large sites have tens of millions of pairs of SKU and pod
+        room = np.iinfo(np.int16).max * unit_space.min(initial=1.0)
+        count = np.int16 if capacity.max(initial=0.0) < room else np.int32
+        self._contained = np.zeros((skus, pods), count)
         self._available = np.zeros((skus, pods), np.int32)
         self._used = np.zeros(pods)
         self._promised = np.zeros(pods)
@@ -86,7 +89,7 @@ class Inventory:
         self._skus_on = np.full((pods, _SLOTS), skus, np.int32)
         self._kinds_on = [0] * pods
         self._wanted = np.zeros(skus, np.int64)
-        self.contained: NDArray[np.int32] = read_only(self._contained)
+        self.contained: NDArray[np.signedinteger] = read_only(self._contained)
         self.available: NDArray[np.int32] = read_only(self._available)
         self.used: NDArray[np.float64] = read_only(self._used)
         self.promised: NDArray[np.float64] = read_only(self._promised)
