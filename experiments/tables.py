@@ -292,9 +292,10 @@ def effects(found: pd.DataFrame, column: str) -> Table:
     decimals = dict(zip(columns_of(made), shown, strict=True))
     told = found.attrs.get("interactions", "")
     how = f"type II sums of squares; {told}" if told else "type II sums of squares"
+    percent = 100 * found.attrs["confidence"]
     caption = (
-        f"Analysis of variance of {column} ({how}); low and high are the ends of the 95% "
-        "confidence interval of partial eta squared."
+        f"Analysis of variance of {column} ({how}); low and high are the ends of the "
+        f"{percent:g}% confidence interval of partial eta squared."
     )
     return Table(made, decimals, caption)
 

@@ -104,6 +104,7 @@ def anova(
     made, told = _table(data, called, mains, pairs if interactions else [])
     found = _with_sizes(made, confidence)
     found.attrs["interactions"] = told
+    found.attrs["confidence"] = confidence
     return found
 
 

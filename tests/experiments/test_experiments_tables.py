@@ -105,6 +105,9 @@ def test_anova_as_a_table(results):
     latex = tables.effects(found, "units_per_h").to("latex")
     assert r"{$\eta$$^2$}" in latex and "ω" not in latex
     assert "each interaction of two factors has a row" in text
+    assert "the 95% confidence interval" in text
+    less = anova(frame, "units_per_h", plan.factors, names=plan.short_names, confidence=0.9)
+    assert "the 90% confidence interval" in tables.effects(less, "units_per_h").to("markdown")
 
 
 def test_digits_follow_the_spread():
