@@ -1,9 +1,10 @@
 """The gain of decisions that know where robots have recently been delayed.
 
 The design `congestion` lets PSA, and TA by linear assignment, add the delay expected from
-congestion to travel times, at two sites with many robots and quick stations. The study publishes
-the change of units per hour, of the delay per trip and of the distance per unit, paired by seed,
-and the share of driving time that is delay: the most that any such decision could save.
+congestion to travel times, at two sites with quick stations, where robots are scarce or the aisles
+full. The study publishes the change of units per hour, of the delay per trip and of the distance
+per unit, paired by seed. It also publishes the share of driving time that is delay, which is the
+most that such decisions could save, and the share of their time for which robots have no task.
 """
 
 from __future__ import annotations
@@ -20,7 +21,13 @@ if TYPE_CHECKING:
 
 SITE, KNOWS = "site", "knows"
 NOTHING = "nothing"
-COLUMNS = ("units_per_h", "trip_delay_mean_s", "trip_time_mean_s", "distance_per_unit_m")
+COLUMNS = (
+    "units_per_h",
+    "trip_delay_mean_s",
+    "trip_time_mean_s",
+    "distance_per_unit_m",
+    "robot_idle_share",
+)
 
 Rows = dict[str, dict[tuple[str, str], float]]
 
@@ -50,6 +57,7 @@ def levels(frame: pd.DataFrame) -> Table:
                 ("units per hour", of["units_per_h"][arm]),
                 ("delay per trip, s", delay_s),
                 ("delay, % of driving time", 100 * delay_s / trip_s),
+                ("robots without a task, %", 100 * of["robot_idle_share"][arm]),
             ):
                 found = interval(values)
                 row |= {(name, "mean"): found.mean, (name, HALF): found.half_width}
