@@ -1,4 +1,4 @@
-"""Rearranging tables of results: factor levels instead of arms, one factor as columns."""
+"""Rearranging tables of results: one column per factor, or one column per level of a factor."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def by_factors(table: Table, plan: Plan) -> Table:
 
 
 def across(table: Table, plan: Plan, factor: str) -> Table:
-    """Arrange the levels of a factor as columns; the rows are the levels of the other factors.
+    """Arrange the levels of a factor as columns, and those of the other factors as rows.
 
     Parameters
     ----------
@@ -93,4 +93,4 @@ def _told(counts: list[pd.Series]) -> str:
     if not counts:
         return ""
     least, most = int(counts[0].min()), int(counts[0].max())
-    return f" {least} seeds a cell." if least == most else f" {least} to {most} seeds a cell."
+    return f" {least} seeds per cell." if least == most else f" {least} to {most} seeds per cell."

@@ -79,7 +79,10 @@ def plan(
     arms: Annotated[bool, typer.Option("--arms", help="List all arms.")] = False,
     pilot: Annotated[bool, typer.Option(help="Make short runs to estimate the time.")] = True,
 ) -> None:
-    """Check a design: print its errors or, if there are none, its arms, runs and estimated time."""
+    """Check a design: print its errors or, if there are none, its size and the estimated time.
+
+    The size consists of the factors with their levels, and the numbers of arms and runs.
+    """
     from rmfs.experiments.complete import may_grow
     from rmfs.experiments.design.stages import schedule
     from rmfs.experiments.results import assigned, failed_pairs
@@ -223,7 +226,8 @@ def table(
 ) -> None:
     """Show means with confidence intervals, paired differences, or an analysis of variance.
 
-    Exits with code 3 if runs of the design are missing; a note on the table says how many.
+    If runs of the design are missing, a note on the table says how many, and the exit code is 3,
+    or 0 with --allow-incomplete.
     """
     from rmfs.experiments import arranging, tables
     from rmfs.experiments.results import to_csv
@@ -291,7 +295,8 @@ def plot(
 ) -> None:
     """Plot the results.
 
-    Exits with code 3 if runs of the design are missing; a note on the plot says how many.
+    If runs of the design are missing, a note on the plot says how many, and the exit code is 3,
+    or 0 with --allow-incomplete.
     """
     from rmfs.experiments.plotting import KINDS, Wish, draw
     from rmfs.experiments.provenance import write
@@ -347,7 +352,8 @@ def report(
 ) -> None:
     """Write a report as one HTML file: means, differences, analyses of variance, plots.
 
-    Exits with code 3 if runs of the design are missing; a note says how many.
+    If runs of the design are missing, a note says how many, and the exit code is 3, or 0 with
+    --allow-incomplete.
     """
     from rmfs.experiments import tables
     from rmfs.experiments.report import write_report

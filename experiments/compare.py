@@ -61,7 +61,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Comparison of one side (`other`) with a side of the first source (`baseline`).
+    """Comparison of two sides: `other` with `baseline`.
 
     Attributes
     ----------
@@ -71,7 +71,8 @@ class Comparison:
         One row per footprint column: `baseline` and `other` (means over the common seeds or, if
         there are none, over all seeds), `difference` (`other` minus `baseline`) with the ends
         `low` and `high` of its interval, `relative` (difference divided by baseline), and the
-        p value `p`. Interval and `p` are nan if there is only one seed.
+        p value `p`. Interval and `p` are nan if only one seed is common or, with none in common, if
+        a side has only one seed.
     pairs
         Number of seeds in common; 0 if the samples were treated as independent.
     identical
@@ -87,7 +88,7 @@ class Comparison:
 
     @property
     def notes(self) -> list[str]:
-        """Missing runs of the experiments of both sides, without duplicates."""
+        """Descriptions of the missing runs of both sides, without duplicates."""
         return list(dict.fromkeys(one.note for one in (self.baseline, self.other) if one.note))
 
 
@@ -286,8 +287,8 @@ def chosen_columns(
 ) -> list[str]:
     """Return the columns to show.
 
-    These are the requested `columns`. If none are requested, they are the main columns or, with
-    `everything`, all reproducible columns whose values differ.
+    These are the requested `columns`. If none are requested, they are the main columns (`MAIN`) or,
+    with `everything`, all reproducible columns whose means differ.
 
     Raises
     ------

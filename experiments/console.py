@@ -13,7 +13,7 @@ WIDE = 240
 
 
 def open_console() -> Console:
-    """Return the console for tables; it wraps lines only on a terminal."""
+    """Return the console for tables, as wide as the terminal; 240 characters without a terminal."""
     from rich.console import Console
 
     return Console(highlight=False, width=None if sys.stdout.isatty() else WIDE)

@@ -82,7 +82,7 @@ def table(footprints: pd.DataFrame) -> Group:
 
 
 def picture(path: Path) -> None:
-    """Draw a heat map of the visits of robots to waypoints, summed over all seeds."""
+    """Draw a heat map: robots that passed or stopped at each waypoint, summed over seeds."""
     import matplotlib as mpl
 
     mpl.use("Agg")

@@ -33,5 +33,5 @@ def optional(module: str, extra: str, purpose: str) -> Any:
 
 
 def statsmodels(module: str) -> Any:
-    """Import a module of statsmodels, given its name without the package."""
+    """Import a module of statsmodels, given its name without the prefix `statsmodels.`."""
     return optional(f"statsmodels.{module}", "experiments", "this statistic")

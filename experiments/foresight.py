@@ -1,10 +1,10 @@
 """The value of perfect foresight: storage locations and robots of a run, chosen in retrospect.
 
 The visits of pods to stations, and the times at which pods are lifted and set down, are kept as in
-the run. With this knowledge, PSA could have chosen other storage locations to reduce loaded
-driving, and TA could have chosen other robots to reduce empty driving. Each of these two problems
-has a proven lower bound on the driving time. The driving time of the run in excess of the bound is
-the most that a better PSA or TA could have saved with everything else unchanged.
+the run. If they had been known in advance, PSA could have chosen other storage locations to reduce
+loaded driving, and TA could have chosen other robots to reduce empty driving. For each of these two
+problems, a lower bound on the driving time is proven. With everything else unchanged, a better PSA
+or TA could have saved at most the driving time of the run minus this bound.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Foresight(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Solve both problems and return the savings, relative to proven lower bounds."""
+        """Solve both problems; return the run's driving times minus proven lower bounds."""
         trips, times = run.tables["trips"], run.recorder.traffic
         data, stored_s = stays_of(run, trips, times)
         saved_s = max(stored_s - solve_stays(data, "highs").bound, 0.0)
@@ -89,18 +89,19 @@ class Foresight(Measure):
 
 
 def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[Stays, float]:
-    """Return the stays of pods at storage locations in a run, and their total cost in it, in s.
+    """Return the stays of pods at storage locations in a run, and their total cost, in s.
 
-    A storage location is reserved for a pod from the start of the drive there until a robot begins
-    to lift the pod again. The cost of this stay is the unhindered time of the drive from the
-    station before it and of the drive to the station after it. A pod that stands at a storage
-    location at the beginning stays there, at no cost, until it is first lifted; the storage
-    locations of pods that never move are left out.
+    A stay begins when a robot starts to carry a pod to a storage location, and ends when a robot
+    begins to lift the pod again; for this time, the location is reserved for the pod. The cost
+    of a stay is the unhindered time of the drive from the previous station to the location and of
+    the drive from there to the next station, if any. A pod that stands at a storage location at the
+    beginning stays there, at no cost, until it is first lifted; the storage locations of pods that
+    never move are left out.
 
     Parameters
     ----------
     run
-        The run, which provides its layout, its end, and the final positions of pods.
+        The run; its layout, its end and the final positions of pods are used.
     trips
         Table of trips of the run.
     times
@@ -108,8 +109,8 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 
     Returns
     -------
-    The stays, as data of a model in which each storage location is a zone of its own; and their
-    total cost, in s, at the storage locations that were used in the run.
+    The stays, as data of the model `stays`, with each storage location as a zone of its own; and
+    their total cost in the run, in s.
     """
     loaded = trips[trips["loaded"]]
     lifts = {
@@ -155,11 +156,11 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 
 
 def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int]:
-    """Return the empty driving of a run, and its minimum over all choices of robots, in s.
+    """Return the time of empty trips to pods in a run, and its minimum over choices of robots.
 
-    In every choice considered, every pod is lifted at the same place and no later than in the run,
-    by a robot that was free before. A robot becomes free when and where a trip to a pod begins in
-    the run.
+    Each trip to a pod in the run provides a free robot, at the time and place at which the trip
+    began, and a pod to be lifted, at the place at which the trip ended. A choice assigns one of the
+    free robots to each pod, such that every pod is reached no later than in the run.
 
     Parameters
     ----------
@@ -170,8 +171,8 @@ def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int
 
     Returns
     -------
-    Unhindered time of the trips to pods in the run, and its minimum over all choices, in s; and the
-    number of these trips.
+    Unhindered time of the trips to pods in the run, and its minimum over all choices of robots, in
+    s; and the number of these trips.
     """
     to_pod = trips[trips["kind"] == "to_pod"].sort_values("start_s")
     arrival_s = to_pod["end_s"].to_numpy()

@@ -1,4 +1,4 @@
-"""Opening an experiment by a design file, the name of a shipped design, or a results folder."""
+"""Opening an experiment, given a design file, the name of a shipped design, or its results."""
 
 from __future__ import annotations
 
@@ -63,12 +63,14 @@ def opened(design: str, out: Path | None = None) -> Opened:
         A design file, the name of a shipped design, or a folder of results, which contains the
         plan.
     out
-        The folder of results. Default: `results/NAME`.
+        The folder of results, unless `design` is a folder itself. Default: `results/NAME`, with the
+        name stated in the design.
 
     Raises
     ------
     InputError
-        If there is no such design, or the folder holds no experiment.
+        If there is no such design, the folder holds no experiment, or `design` and `out` are both
+        folders.
     """
     from rmfs.experiments.design import planning
     from rmfs.experiments.store import Store
@@ -84,7 +86,7 @@ def opened(design: str, out: Path | None = None) -> Opened:
 
 
 def refuse(made: Plan) -> None:
-    """Print all errors of a plan, one line each, and exit with code 2."""
+    """If a plan has errors, print them, one line each, and exit with code 2."""
     if made.problems:
         for problem in made.problems:
             typer.echo(f"rmfs: {made.source}: {' '.join(problem.split())}", err=True)

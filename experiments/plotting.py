@@ -1,4 +1,4 @@
-"""Complete plots from results, composed of the functions in `figures`."""
+"""Draws complete plots of results with the functions in `figures`."""
 
 from __future__ import annotations
 
@@ -47,13 +47,14 @@ class Wish:
     confidence
         Confidence of the intervals. Default 0.95.
     interactions
-        Whether `effects` also shows the interactions of pairs of factors. Default: yes, if the
-        runs can separate them from other effects.
+        Whether the plot `effects` also shows the interactions of pairs of factors if the runs can
+        separate them from other effects. Default: yes.
     factors
-        Factors for `interaction`: two or more, by key or short name. Default: all.
+        Factors of the plot `interaction`: at least two, each given by its key or short name (see
+        `Plan`). Default: all with more than one level.
     goals
-        Goals for `pareto`: whether "more" or "less" of a column is better. Default: from the data
-        dictionary.
+        For columns of the plot `pareto`: whether "more" or "less" is better. Default: as in the
+        data dictionary.
     note
         A line below the plot. Default: none.
     """
@@ -83,7 +84,7 @@ def draw(
     frame
         Results, as `experiments.load` returns them.
     folder
-        Folder of the results, for the time series.
+        Folder of the results, from which the plot `progression` reads the time series.
     columns
         Columns to show.
     path
@@ -92,7 +93,7 @@ def draw(
     Raises
     ------
     InputError
-        If there is no such plot, or it cannot be drawn from these results.
+        If `kind` is not one of `KINDS`, or the plot cannot show these results and columns.
     """
     if kind not in KINDS:
         raise InputError(f"{kind}: no such plot; valid: {', '.join(KINDS)}")
@@ -240,10 +241,10 @@ def _progression(folder: Path, columns: list[str], path: Path | None, wish: Wish
 
 
 def bin_of(end_s: float) -> float:
-    """Return a bin width in s for runs that end at `end_s`.
+    """Return the width of the time bins, in s, for a plot of runs that end at `end_s`.
 
-    It is the smallest of several widths from a minute to half an hour that gives at most 24 bins;
-    otherwise, it is an hour.
+    Of several widths from a minute to half an hour, the smallest with at most 24 bins is returned.
+    If all of them give more bins, the width is an hour.
     """
     for width in (60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0):
         if end_s / width <= 24:

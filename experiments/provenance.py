@@ -1,4 +1,4 @@
-"""Provenance files of tables and plots, which say where their numbers come from."""
+"""Writes provenance files, which say where the numbers of tables and plots come from."""
 
 from __future__ import annotations
 
@@ -36,9 +36,10 @@ def write(
     Parameters
     ----------
     path
-        The table or plot; its provenance file gets the suffix `.provenance.json`.
+        The file of the table or plot. The provenance file is named after it, with
+        `.provenance.json` appended.
     frame
-        The rows from which it was made, as returned by `experiments.load`.
+        The rows from which the table or plot was made, as returned by `experiments.load`.
     design, design_hash
         Name and hash of the design.
     columns
@@ -48,7 +49,7 @@ def write(
 
     Returns
     -------
-    The provenance file.
+    The path of the provenance file.
     """
     made_by = sorted({(row.code, row.git_commit) for row in frame.itertuples()})
     told = {
@@ -75,7 +76,7 @@ def write(
 
 
 def command() -> str:
-    """Return the current command without machine-specific paths: `/a/b/c` becomes `.../c`."""
+    """Return the command line of this process; absolute paths like `/a/b/c` become `.../c`."""
     module = getattr(sys.modules["__main__"], "__spec__", None)
     name = Path(sys.argv[0]).name if module is None else f"python -m {module.name}"
     given = [f".../{Path(one).name}" if Path(one).is_absolute() else one for one in sys.argv[1:]]
@@ -83,7 +84,10 @@ def command() -> str:
 
 
 def rows_hash(frame: pd.DataFrame, columns: Sequence[str]) -> str:
-    """Return a hash of the values shown, which is equal for equal results on any machine."""
+    """Return a hash of the values of `arm`, `replication` and `columns` in all rows.
+
+    For equal results, the hash is the same on all machines.
+    """
     chosen = [*dict.fromkeys(["arm", "replication", *(c for c in columns if c in frame)])]
     text = frame.sort_values(["arm", "replication"], kind="stable")[chosen].to_csv(index=False)
     return hashlib.sha256(text.encode()).hexdigest()

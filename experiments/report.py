@@ -48,7 +48,7 @@ def write_report(
     Raises
     ------
     InputError
-        If there are no results or no such baseline, or if the file cannot be written.
+        If there are no results, `baseline` is not an arm, or the file cannot be written.
     """
     frame, note = one.rows()
     write_text(path, _render(one, frame, note, list(columns), baseline, confidence))

@@ -21,21 +21,21 @@ if TYPE_CHECKING:
 
 
 def load(folder: str | Path, *, table: str = "footprint") -> pd.DataFrame:
-    """Load the results of an experiment, finished or running.
+    """Load the results of a finished or running experiment.
 
     Parameters
     ----------
     folder
         Folder of the experiment's results.
     table
-        `footprint`, or a table that the design keeps.
+        `footprint`, or one of the tables that the entry `keep` of the design lists.
 
     Returns
     -------
-    For `footprint`, one row per finished run, sorted by arm (in design order) and seed: `arm`, a
-    column per factor, `stage`, `replication`, the footprint, `run` (a hash that identifies the
-    run), and the columns on how the run was made. Other tables start with `arm`, the factors,
-    `replication` and `seed`.
+    For `footprint`, one row per finished run, sorted by arm (in design order) and replication. Its
+    columns are `arm`, the factors, `stage`, `replication` (the seed as listed in the design), the
+    footprint, `run` (a hash that identifies the run), and further columns on the origin of the
+    run. Other tables start with the columns `arm`, the factors, `replication` and `seed`.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def failures(folder: str | Path) -> pd.DataFrame:
 
 
 def failed(plan: Plan, store: Store) -> pd.DataFrame:
-    """Return the failed runs of a plan that have not been repeated successfully."""
+    """Return the failed runs of a plan, except those that were later repeated successfully."""
     found = store.failures()
     replications = [int(r) for r in found["replication"].unique()]
     names = {
@@ -84,9 +84,10 @@ def failed_pairs(plan: Plan, store: Store) -> set[tuple[str, int]]:
 
 
 def assigned(plan: Plan, store: Store) -> pd.DataFrame:
-    """Return the finished runs of a plan, with arms and factors, in the order of the plan.
+    """Return the results of a plan's finished runs, one row each, with arm and factors.
 
-    Runs with outdated inputs, and runs of seeds that are no longer in the plan, are excluded.
+    Rows are sorted by arm (in the order of the plan) and replication. Runs with outdated inputs
+    and runs that the plan no longer requires, such as those of removed seeds, are excluded.
     """
     rows = store.rows()
     by_digest = {arm.digest: arm for arm in plan.arms}
@@ -110,11 +111,11 @@ def assigned(plan: Plan, store: Store) -> pd.DataFrame:
 
 
 def reproducible_table(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the columns that are equal whenever an experiment is repeated.
+    """Return those columns of results whose values do not change if the experiment is repeated.
 
-    Rows are sorted by arm and seed. Measured columns (such as wall times) and the columns on how a
-    run was made are excluded. Two experiments are identical if their tables of these columns,
-    written as CSV, are equal byte for byte.
+    Rows are sorted by arm and replication. Columns that depend on the machine (such as wall times)
+    and columns on the origin of a run are excluded. The results of two experiments are identical if
+    the tables that this function returns for them, written as CSV, are equal byte for byte.
     """
     gone = {*names("footprint")} - {*reproducible("footprint")}
     gone |= {column.name for column in learnt() if column.measured}
@@ -124,7 +125,7 @@ def reproducible_table(frame: pd.DataFrame) -> pd.DataFrame:
 
 
 def to_csv(frame: pd.DataFrame, path: Path) -> None:
-    """Write the reproducible part of results as CSV."""
+    """Write the `reproducible_table` of results as CSV."""
     from rmfs.files import write_text
 
     write_text(path, reproducible_table(frame).to_csv(index=False, lineterminator="\n"))

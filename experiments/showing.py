@@ -64,7 +64,7 @@ def chosen_table(
     *,
     bootstrap: bool,
 ) -> Table:
-    """Return the table of means, or of differences to a baseline."""
+    """Return the table of means or, if a baseline is given, of differences to it."""
     from rmfs.experiments import tables
 
     method: Any = "bootstrap" if bootstrap else "t"
@@ -75,7 +75,7 @@ def chosen_table(
 
 
 def goals(given: list[str]) -> dict[str, Goal]:
-    """Return the goals given as `COLUMN=more` or `COLUMN=less`, by column."""
+    """Read texts of the form `COLUMN=more` or `COLUMN=less`; return the goal of each column."""
     found: dict[str, Goal] = {}
     for text in given:
         column, _, goal = text.partition("=")
@@ -86,7 +86,7 @@ def goals(given: list[str]) -> dict[str, Goal]:
 
 
 def tell_lacking(note: str, *, allowed: bool) -> None:
-    """Print a note on missing runs, and exit with code 3 unless they are allowed."""
+    """If there is a note on missing runs, print it and, unless `allowed`, exit with code 3."""
     if note:
         typer.echo(f"rmfs: {note}", err=True)
         if not allowed:
@@ -94,12 +94,12 @@ def tell_lacking(note: str, *, allowed: bool) -> None:
 
 
 def require_columns(frame: pd.DataFrame, columns: list[str]) -> None:
-    """Raise an error for columns that the rows do not have or that are not numeric.
+    """Raise an error if a column is missing from the rows or is not numeric.
 
     Raises
     ------
     InputError
-        If there is such a column.
+        If a column is missing or not numeric.
     """
     from rmfs.experiments.statistics.intervals import require
 

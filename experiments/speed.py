@@ -1,9 +1,9 @@
 """Speed of runs, and how their time is spent: `rmfs bench`.
 
-All runs take place in this process, on one core, without checker and trace; each case is run
-several times. A fixed reference loop is timed before each run, so that machines can be compared.
-The figure to quote is simulated seconds per wall second; to compare machines, multiply it by the
-seconds that the loop takes.
+All runs take place in one process, on one core, without checker and trace; each case is run several
+times. A fixed reference loop is timed before each run, so that machines can be compared. The figure
+to quote is the number of simulated seconds per wall second; to compare machines, multiply it by the
+seconds that the reference loop takes.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ class Case:
     Attributes
     ----------
     duration_s
-        Simulated seconds. There is no warm-up, so the measured times include building the first
-        tables for the search for routes.
+        Simulated seconds. There is no warm-up, so the measured times include computing the first
+        tables of travel times, which the search for routes uses.
     """
 
     layout: str
@@ -57,7 +57,7 @@ CASES = [
 
 
 def reference_loop() -> float:
-    """Return the time of a fixed loop of plain Python, a linear congruential generator, in s."""
+    """Return the seconds that a fixed loop of plain Python (a random number generator) takes."""
     begun = time.perf_counter()
     state = 1
     for _ in range(REFERENCE_STEPS):
@@ -70,8 +70,9 @@ def measure(case: Case, seed: int) -> dict[str, float]:
 
     Returns
     -------
-    Wall seconds of the simulation loop (`wall_s`), of planning (`planning_s`) and of decisions
-    (`decisions_s`); orders completed; peak memory in MB; and the seconds of the reference loop.
+    Wall seconds of the simulation loop (`wall_s`) and, within it, of path planning (`planning_s`)
+    and of decisions (`decisions_s`); completed orders (`orders`); peak memory in MB
+    (`peak_rss_mb`); and seconds of the reference loop (`reference_loop_s`).
     """
     loop_s = reference_loop()
     overrides = [(["scenario", "duration_s"], case.duration_s), (["scenario", "warmup_s"], 0.0)]
@@ -102,7 +103,8 @@ def table(
     tell
         Function called with one line per case.
     advance
-        Function called after each run with the number of runs done and in total.
+        Function called at the start and after each run, with the number of runs done and the number
+        of all runs.
     """
     rows = []
     total = len(cases) * runs
@@ -133,7 +135,7 @@ def table(
 
 
 def save(frame: pd.DataFrame, folder: Path) -> None:
-    """Write the table as CSV and Markdown, with a description of the machine."""
+    """Write the table as CSV and as Markdown; the Markdown file also names the platform."""
     write_text(folder / "speed.csv", frame.to_csv(index=False))
     write_text(folder / "speed.md", f"{to_markdown(frame)}\n\n{platform.platform()}\n")
 

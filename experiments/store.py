@@ -6,9 +6,9 @@
 - `failures/`: for each failed run, one JSON file with the traceback
 
 Every file is written completely or not at all, so the dataset can be read at any time. Runs are
-stored under their key, a hash of everything that determines them. Only duplicates are ever deleted:
-rows with outdated inputs stay until the folder is removed, and count again if the input is
-restored.
+stored under their key, a hash of everything that determines them. Of finished runs, only duplicates
+are ever deleted: rows with outdated inputs stay until the folder is removed, and count again if the
+inputs are restored.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ class Store:
 
     @contextmanager
     def locked(self) -> Iterator[None]:
-        """Lock the folder against other processes; remove files left half-written earlier.
+        """Lock the folder against other processes; remove half-written files of earlier processes.
 
         Raises
         ------
@@ -99,7 +99,7 @@ class Store:
         Parameters
         ----------
         code
-            Values of `rmfs_version`, `git_commit` and `code`.
+            Version of the code: values of the columns `rmfs_version`, `git_commit` and `code`.
         """
         if outcome.footprint is None:
             told = {
@@ -123,7 +123,7 @@ class Store:
         (self.folder / FAILURES / f"{job.key}.json").unlink(missing_ok=True)
 
     def merge(self, at_least: int = MANY) -> None:
-        """Merge the files of single runs, if there are many."""
+        """Merge the files of single runs if there are at least `at_least` of them."""
         single = sorted(p for p in self._files() if not p.name.startswith(MERGED))
         if len(single) < at_least:
             return
@@ -157,7 +157,7 @@ class Store:
         Parameters
         ----------
         columns
-            Columns to read in addition to `run`. Default: all.
+            Columns to read in addition to `run`, the key. Default: all.
 
         Raises
         ------
@@ -186,12 +186,12 @@ class Store:
         return keys
 
     def table(self, name: str, keys: Sequence[str]) -> pd.DataFrame:
-        """Read a table that was kept, for some runs.
+        """Read the table `name` of the runs with these keys, as far as it was kept.
 
         Raises
         ------
         InputError
-            If the table was not kept, or one of its files is corrupted.
+            If the table was not kept for any run, or one of its files is corrupted.
         """
         if not (self.folder / name).is_dir():
             raise InputError(f'{self.folder}: table {name} was not kept; set keep = ["{name}"]')

@@ -53,7 +53,7 @@ class Study:
 
     @property
     def lacking(self) -> str:
-        """Description of missing runs, also noted in tables; empty if there are none."""
+        """Description of missing runs, a note below every table; empty if no run is missing."""
         return lacking(self.plan, Store(self.folder))
 
     def table(self, *columns: str, by: str | None = None, confidence: float = 0.95) -> Table:
@@ -64,8 +64,8 @@ class Study:
         columns
             Columns of the footprint. Default `units_per_h`.
         by
-            A factor whose levels get one row each, averaged over all other factors seed by seed.
-            Default: one row per arm.
+            A factor. Each of its levels gets one row, for which the runs of each seed are averaged
+            over all other factors. Default: one row per arm.
 
         Raises
         ------
@@ -122,11 +122,13 @@ class Study:
         Parameters
         ----------
         columns
-            Columns of the footprint. Default: those of the kind of plot.
+            Columns of the footprint; for `progression`, of the table `series`. Default: depends on
+            `kind`.
         kind
-            `intervals` (a dot for every seed, means with their intervals), `effects` (of factors
-            and pairs of them), `interaction` (of pairs of factors), `pareto` (two columns),
-            `progression` (over time; needs `keep=["series"]`).
+            `intervals` (a dot for every seed; mean and interval of each arm), `effects` (mean at
+            each level of each factor; also of pairs of factors if the runs can separate their
+            interactions), `interaction` (mean at each pair of levels of two factors), `pareto`
+            (one column against another), `progression` (over time; needs `keep=["series"]`).
         by
             For `intervals`: as for `table`.
         factors
@@ -138,7 +140,7 @@ class Study:
         Raises
         ------
         InputError
-            If there is no such plot, column or factor, or the results do not allow it.
+            If there is no such plot, column or factor, or the plot cannot show these results.
         """
         from rmfs.experiments.plotting import KINDS, Wish, draw
 
@@ -200,8 +202,8 @@ def experiment(
     Parameters
     ----------
     factors
-        Levels by parameter, as in `set` of `rmfs.simulate`: `{"layout.robots": [8, 16]}`. A rule
-        can also be given as a class.
+        A list of levels for each parameter: `{"layout.robots": [8, 16]}`. Parameters are named as
+        in `set` of `rmfs.simulate`. A level may also be the class of a rule.
     seeds
         Seeds, the same for every arm, so that arms can be compared seed by seed.
     base
@@ -214,8 +216,8 @@ def experiment(
     name
         Name of the experiment.
     out
-        Folder for the results. Default: below `results`, with a name derived from `name` and the
-        inputs.
+        Folder for the results. Default: a folder below `results`, named after `name` and a hash of
+        the plan.
     processes
         Number of parallel runs. Default: one per core.
     watcher

@@ -52,7 +52,7 @@ class Table:
     decimals
         Number of decimal places per column.
     caption
-        The caption, in one sentence.
+        The caption: one sentence, and a note if there is one.
     """
 
     frame: pd.DataFrame
@@ -75,7 +75,7 @@ class Table:
         Raises
         ------
         InputError
-            If a package is missing.
+            If a package that the format needs is missing.
         """
         match form:
             case "latex":
@@ -88,7 +88,7 @@ class Table:
                 return self.html()
 
     def latex(self) -> str:
-        r"""Return the table as LaTeX, which needs \usepackage{booktabs,siunitx}."""
+        r"""Return the table as LaTeX, for documents with \usepackage{booktabs,siunitx}."""
         optional("jinja2", "experiments", "a LaTeX table")
         frame = self.frame.copy()
         frame.columns = _latex_header(columns_of(frame))
@@ -146,7 +146,7 @@ class Table:
         return str(style.set_uuid("rmfs").set_caption(self.caption).to_html()) + "\n"
 
     def rich(self) -> object:
-        """Return the table for the terminal."""
+        """Return the table as an object of the package Rich, for printing in a terminal."""
         from rich import box
         from rich.table import Table as RichTable
 
@@ -227,7 +227,7 @@ def means(
     method: Method = "t",
     by: str = "arm",
 ) -> Table:
-    """Return means and half widths of their intervals, one row per arm."""
+    """Return means and half widths of their confidence intervals, one row per arm."""
     parts = {}
     decimals: dict[tuple[str, str], int] = {}
     for column in columns:
@@ -325,7 +325,11 @@ def _called(method: str) -> str:
 
 
 def digits(halves: pd.Series, values: pd.Series) -> int:
-    """Return how many decimal places show the median half width to two significant digits."""
+    """Return the number of decimal places with which values and half widths are shown.
+
+    The median half width then has two significant digits; without half widths, the largest value
+    has four. At most six decimal places are used.
+    """
     known = [h for h in halves.dropna() if h > ROUNDING and isfinite(h)]
     if not known:
         if ((values.dropna() - values.dropna().round()).abs() < ROUNDING).all():

@@ -21,7 +21,7 @@ _EFFECTS = {
 def heading(column: str) -> str:
     """Return the heading of a column of a table, in words with the unit.
 
-    Text after a comma is not changed.
+    If `column` contains a comma, the text after it is not changed.
     """
     name, comma, rest = column.partition(",")
     known = {one.name for one in (*TABLES["footprint"], *learnt())}
@@ -29,14 +29,14 @@ def heading(column: str) -> str:
 
 
 def p_value(p: float) -> str:
-    """Format a p value as in papers: with three decimal places, or as smaller than `SMALL`."""
+    """Format a p value as in papers: with three decimal places, or as "<0.001"; nan as "-"."""
     if p != p:
         return "-"
     return f"<{SMALL}" if p < SMALL else f"{p:.3f}"
 
 
 def axis_label(column: str, table: str = "footprint", *, per: str = "") -> str:
-    """Return a label with the unit of a column.
+    """Return the label of a column for an axis, in words with the unit.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A hash of the code that simulates and decides."""
+"""A hash of the code, by which checkpoints of another version are recognised."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SUFFIXES = (".py", ".so", ".pyd")
 
 @cache
 def code_hash() -> str:
-    """Return a hash of the Python files and the compiled core, 16 hexadecimal digits.
+    """Return a hash of the Python files and the compiled core of rmfs, as 16 hexadecimal digits.
 
     The sub-packages in `NOT_SIMULATED` are left out. Uncommitted changes in a checkout change the
     hash, too.

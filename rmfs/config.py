@@ -31,9 +31,9 @@ LARGEST_SEED = 2**63 - 1
 class Model(pydantic.BaseModel):
     """Base class of all configuration blocks: unknown keys are errors, and values are immutable.
 
-    A number is 0, infinite, or has an absolute value from `SMALLEST` to `LARGEST` (a `seed`: to
-    `LARGEST_SEED`); a field may have a narrower range. Booleans must be written as `true` or
-    `false`.
+    A number must be 0 or infinite, or have an absolute value from `SMALLEST` to `LARGEST` (for a
+    `seed`: to `LARGEST_SEED`); a field may have a narrower range. Booleans must be written as
+    `true` or `false`.
     """
 
     model_config = pydantic.ConfigDict(extra="forbid", frozen=True, validate_default=True)
@@ -101,7 +101,7 @@ def parse_override(text: str) -> tuple[list[str], Any]:
     Raises
     ------
     InputError
-        If there is no `=`, the key is empty, or the value has too many digits or levels of nesting.
+        If `=` or the key is missing, or the value has too many digits or levels of nesting.
     """
     key, separator, value = text.partition("=")
     if not separator or not key.strip():
@@ -146,8 +146,9 @@ def validate(model: type[M], table: Table, source: str) -> M:
     Raises
     ------
     InputError
-        If the table is invalid. The message lists all errors on one line, each with its key, and
-        for an unknown key the nearest valid one.
+        If the table is invalid. The message lists all errors on one line, each with its key. For
+        an unknown key, it names the valid key that is spelt most similarly or, if none is similar,
+        all valid keys.
     """
     try:
         return model.model_validate(table)

@@ -1,4 +1,4 @@
-"""A hash of a value, computed from its content and not from its layout in memory."""
+"""A hash of a value, computed from its content and not from how it is stored in memory."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ A dataclass can thus get a new field without changing the hash of values in whic
 
 
 def digest(value: object) -> str:
-    """Return the SHA-256 of a value, 64 hexadecimal digits.
+    """Return the SHA-256 of a value as 64 hexadecimal digits.
 
     The value may consist of arrays, numbers, strings, dataclasses, dicts, tuples and lists. An
     object with a method `digested` is represented by the return value of that method.

@@ -1,10 +1,10 @@
-"""The errors that a user can cause, kept apart from programming errors.
+"""Exceptions for wrong input, for runs that cannot continue, and for defects of rmfs.
 
 An `InputError` carries one line for the user: which file, which key, and what would be valid. The
 command line prints it and exits with code 2. A `RuleError` also carries one line: what a user's
-controller did wrong in a run. An `InternalError` is a defect that the program has detected itself;
-the command line writes a file that helps to reproduce it, and exits with code 1. An exception that
-the command line does not handle is a defect and keeps its traceback.
+controller did wrong in a run. An `InternalError` reports a defect that the program has detected
+itself; the command line writes a file that helps to reproduce the defect, and exits with code 1. An
+exception that the command line does not handle also indicates a defect; its traceback is shown.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class LayoutError(InputError):
     Parameters
     ----------
     problems
-        Every violation found, each naming the element concerned.
+        The violations because of which the layout is refused, each with the element concerned.
     source
         The file or name of the layout.
     """
@@ -45,7 +45,8 @@ class RuleError(RuntimeError):
     Parameters
     ----------
     message
-        One line: decision problem, rule, simulated time, and what is wrong with its decision.
+        One line with the decision problem, the controller, the simulated time, and what is wrong
+        with the decision.
     """
 
 
@@ -59,5 +60,5 @@ class InternalError(RuntimeError):
     Parameters
     ----------
     message
-        What happened, and where in the sources.
+        What happened; after a failure in Rust code, also where in the source code.
     """

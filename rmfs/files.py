@@ -61,7 +61,8 @@ def replacing(path: Path) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If `path` is a folder, its folder cannot be written, or the disk is full.
+        If `path` is itself a folder, if its parent folder cannot be written, or if the disk is
+        full.
     """
     if path.is_dir():
         raise InputError(f"{path}: is a folder, not a file to write")
@@ -96,20 +97,20 @@ def write_text(path: Path, text: str) -> None:
 def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True) -> Iterator[Path]:
     """Yield a temporary folder beside `target`, which is renamed to `target` on success.
 
-    The temporary folder is created before any work is done, so that a target that cannot be written
-    is noticed early. On an error or an interruption it is removed, together with parent folders
-    created for it. While the context is open, the target is locked against other
-    processes.
+    The temporary folder is created when the context is entered, so that a target that cannot be
+    written is noticed early. On an error or an interruption, the temporary folder is removed,
+    together with parent folders created for it. While the context is open, the target is locked
+    against other processes.
 
     Parameters
     ----------
     mark
-        Name of a file that identifies folders of this kind: an existing folder without this file
-        is replaced only if it is empty.
+        Name of a file by which a folder of the same kind as `target` (for example, a run folder)
+        is recognised: an existing folder without this file is replaced only if it is empty.
     what
         Name of this kind of folder in messages.
     replace
-        Whether an existing folder of this kind may be replaced. Default True.
+        Whether an existing folder that contains the file `mark` may be replaced. Default True.
 
     Raises
     ------

@@ -1,7 +1,6 @@
-"""Reading of files of other systems; the suffix of a file determines its reader.
+"""Reading of files of other systems (RAWSim-O); the suffix of a file determines its reader.
 
-Readers are named here and imported only when one of their files is loaded; nothing else in the
-simulator knows the formats of other systems.
+Readers are named here; each is imported only when a file with its suffix is loaded.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ _READERS = {
 
 
 def read(path: Path) -> Any:
-    """Read a file of another system with the reader for its suffix.
+    """Read a file of another system with the reader for the suffix of the file.
 
     Returns
     -------

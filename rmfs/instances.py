@@ -1,4 +1,4 @@
-"""The shipped instances: where they are, and how a name on the command line becomes a file."""
+"""The shipped instances (layouts, scenarios and controllers), and how files are found by name."""
 
 from __future__ import annotations
 

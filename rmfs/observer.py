@@ -1,7 +1,7 @@
-"""Observers of a run: the only interface through which the kernel reports events.
+"""Observers of a run: the only interface through which the simulation reports events.
 
-The simulation calls these methods as events happen; by default each does nothing. A measure
-overrides the few it needs, so that the simulation never depends on what is measured.
+The simulation calls the methods of `Observer` as events happen; by default, they do nothing. A
+measure overrides those that it needs, so the simulation never depends on what is measured.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 class MotionCounts(TravelTimes, Protocol):
     """The part of the traffic model that counts motion.
 
-    Unless stated otherwise, counts start at time zero and again at the end of the warm-up.
+    Unless stated otherwise, counts start at time zero and are reset at the end of the warm-up.
     """
 
     def motion(self) -> dict[str, NDArray[Any]]:
-        """Return arrays of distances (m) and times (s), one value per robot, by name."""
+        """Return, by name, arrays of distances (m) and times (s), with one value per robot."""
         ...
 
     def trips(self) -> dict[str, NDArray[Any]]:
@@ -39,18 +39,19 @@ class MotionCounts(TravelTimes, Protocol):
         ...
 
     def edges(self) -> dict[str, NDArray[Any]]:
-        """Return the edges used, and how often robots passed them, as columns by name."""
+        """Return the edges that robots used, and how often they passed each, as columns by name."""
         ...
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return arrays of energies (J) and charging times (s), one value per robot, by name.
+        """Return, by name, arrays of energies (J) and charging times (s), one value per robot.
 
-        May be called only if the scenario models energy.
+        `initial_j`, `ever_charged_j`, `ever_used_j` and `level_j` are not reset. May be called only
+        if the scenario models energy.
         """
         ...
 
     def used_j(self, robot: int) -> float:
-        """Return the energy drawn by a robot since time zero, in J.
+        """Return the energy drawn by a robot since time zero, less recovered braking energy, in J.
 
         May be called only if the scenario models energy.
         """
@@ -59,12 +60,12 @@ class MotionCounts(TravelTimes, Protocol):
     def plans(self) -> dict[str, NDArray[Any]]:
         """Return the searches for plans since time zero, as columns by name.
 
-        There are none if searches take no simulated time.
+        The columns are empty if searches take no simulated time.
         """
         ...
 
     def counters(self) -> dict[str, float]:
-        """Return counters of path planning by name, and its wall time in s."""
+        """Return counts and times (s) of path planning, by name."""
         ...
 
 
@@ -72,18 +73,21 @@ class Troubles(Protocol):
     """The part of a run that records disturbances."""
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return the number of disturbances in a period, and their total duration in it, in s."""
+        """Return how many disturbances overlap a period, and how long they last in it, in s.
+
+        The durations of simultaneous disturbances are added up.
+        """
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Observed:
-    """The state of a run as observers see it. Observers read it but must not change it.
+    """The state of a run, which observers may read but must not change.
 
     Attributes
     ----------
     layout, scenario
-        The simulated inputs.
+        The layout and the scenario that are simulated.
     world
         Pods, orders, stations and robots in their current state; `world.now_s` is the time.
     traffic
@@ -91,7 +95,7 @@ class Observed:
     disturbances
         Counts the disturbances of the run.
     order_stream, bundle_stream
-        The orders and the bundles read from a file; None if the scenario names no such file.
+        The orders and the bundles, if they are read from a file; None otherwise.
     """
 
     layout: Layout
@@ -120,13 +124,16 @@ class Observer:
         """Report that a pick order joined the backlog (`order.created_s`)."""
 
     def order_cut(self, order: Order) -> None:
-        """Report that an order in the backlog lost units that are not in stock (`units_cut`)."""
+        """Report that units not in stock were cut from an order of the backlog (`units_cut`)."""
 
     def order_cancelled(self, order: Order) -> None:
-        """Report that an order that stock cannot serve was cancelled (`order.cancelled_s`)."""
+        """Report that an order was cancelled for lack of stock (`order.cancelled_s`)."""
 
     def order_assigned(self, order: Order) -> None:
-        """Report that POA assigned an order to a pick station (`station`, `assigned_s`)."""
+        """Report that POA assigned an order, or a part of one, to a pick station.
+
+        The station and the time are `order.station` and `order.assigned_s`.
+        """
 
     def order_queued(self, order: Order) -> None:
         """Report that an order of the backlog was reserved for a station (`order.queued_at`).
@@ -135,7 +142,10 @@ class Observer:
         """
 
     def picks_changed(self, time_s: float, robot: int) -> None:
-        """Report a change of a robot's pick task: requests were bound to its pod, or reopened."""
+        """Report that requests were bound to the pod of a robot's pick task, or released from it.
+
+        It may also be called when nothing has changed.
+        """
 
     def unit_picked(
         self,
@@ -149,11 +159,14 @@ class Observer:
     ) -> None:
         """Report that the pick of a unit starts.
 
-        `late_bound` is true if the unit was added to the pod's task after the task had begun.
+        `late_bound` is true if the unit was bound to the pod after the robot's task had begun.
         """
 
     def unit_handled(self, handled: Handled) -> None:
-        """Report how the picker handles the unit just reported; only in scenarios with pickers."""
+        """Report how a picker handles the unit that was just reported by `unit_picked`.
+
+        Called only in scenarios with pickers.
+        """
 
     def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
         """Report that a picker leaves a pick station, having been there during [from_s, to_s)."""
@@ -168,31 +181,38 @@ class Observer:
         """Report that an order, with all its parts, has left the stations (`completed_s`)."""
 
     def slot_freed(self, order: Order) -> None:
-        """Report that an order, or a part of one, has left its pick station and freed the slot."""
+        """Report that an order, or a part of one, has left its pick station and freed its slot."""
 
     def tote_held(self, station: int, from_s: float, to_s: float) -> None:
-        """Report that an order, or part of one, could not leave a station during [from_s, to_s)."""
+        """Report that an order, or part of one, could not leave a station during [from_s, to_s).
+
+        The reason is lack of room for its tote on the conveyor or in the put wall.
+        """
 
     def order_packed(self, parcel: Parcel) -> None:
         """Report that an order is packed (`parcel.packed_s`); only in scenarios with packing."""
 
     def bundle_created(self, bundle: Bundle) -> None:
-        """Report that a replenishment order (bundle) joined the backlog (`bundle.created_s`)."""
+        """Report that a bundle, a replenishment order, has arrived (`bundle.created_s`)."""
 
     def bundle_promised(self, bundle: Bundle) -> None:
-        """Report that RPS chose a bundle's pod (`bundle.pod`).
+        """Report that RPS promised a bundle to a pod (`bundle.pod`).
 
-        ROA and TA act on the choice only after its release (`bundles_released`).
+        ROA and TA may act on the promise only after `bundles_released` has been called for the pod.
         """
 
     def bundles_released(self, pod: int) -> None:
-        """Report that RPS released the bundles promised to a pod: ROA and TA may act on them."""
+        """Report that the bundles promised to a pod were released: ROA and TA may act on them."""
 
     def bundle_sent(self, bundle: Bundle) -> None:
         """Report that ROA chose the station of a bundle (`bundle.station`)."""
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """Report that a bundle has a station and a pod (`station`, `pod`, `assigned_s`)."""
+        """Report that a bundle is assigned: it has been released and has a station.
+
+        Its pod, station and time of assignment are `bundle.pod`, `bundle.station` and
+        `bundle.assigned_s`.
+        """
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
         """Report that the transfer of a bundle into its pod starts (`bundle.stored_s`)."""
@@ -212,7 +232,8 @@ class Observer:
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
         """Report that a station is busy during [from_s, to_s).
 
-        It handles one unit or bundle, serves one visit, charges one robot or swaps its battery.
+        In this period, a unit or a bundle is handled, a robot is charged, a battery is swapped, or
+        a pod is kept at a station of a user-defined kind.
         """
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
@@ -222,10 +243,10 @@ class Observer:
         """
 
     def robot_free(self, robot: int) -> None:
-        """Report that a robot's task ended and it needs a new one."""
+        """Report that a robot has ended its task and needs a new one."""
 
     def place_left(self, robot: int) -> None:
-        """Report that a robot left storage locations that were reserved for it."""
+        """Report that a robot has left storage locations, which are no longer reserved for it."""
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
         """Report that a robot starts to lift a pod."""
@@ -234,32 +255,32 @@ class Observer:
         """Report that a robot has set down its pod at a storage location."""
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Report a call of a controller, which took `wall_s` of wall time.
+        """Report that a controller was asked for decisions; the call took `wall_s` of wall time.
 
-        `decisions` is the number of decisions made by a rule. Decisions that follow from an
-        optimiser's solution are counted in its `Call` instead.
+        `decisions` is the number of decisions that it made without an optimiser. Decisions that
+        follow from an optimiser's solution are counted in the `Call` that asked for it.
         """
 
     def rule_decided(self, problem: str, time_s: float) -> None:
-        """Report that a controller with an optimiser made a decision by its own rule."""
+        """Report that a controller made a decision by its own rule although it has an optimiser."""
 
     def optimiser_asked(self, call: Call) -> None:
         """Report that a controller asked an optimiser a question."""
 
     def optimiser_answered(self, call: Call) -> None:
-        """Report that an optimiser answered or that the call to it failed.
+        """Report that an optimiser answered, or that its call failed or was abandoned.
 
-        Parts of the answer may be applied later.
+        Some decisions of the answer may be applied only later.
         """
 
     def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
-        """Report that another controller, the rule `name`, was installed for a problem."""
+        """Report that the controller called `name` has replaced the previous one for a problem."""
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """Report that SA switched a station on or off."""
 
     def warmup_ended(self, time_s: float) -> None:
-        """Report the end of the warm-up: observers reset their counts; work in progress goes on."""
+        """Report the end of the warm-up, when measuring begins; work in progress goes on."""
 
     def sampled(self, time_s: float) -> None:
-        """Report that another simulated minute has passed since the end of the warm-up."""
+        """Report that one more minute of the measured time has been simulated."""

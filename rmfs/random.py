@@ -1,7 +1,7 @@
 """A tree of named random streams, grown from one seed.
 
-Each stream is derived from the run's seed and its own fixed number. Adding a stream therefore never
-changes another, and arms of an experiment that run with the same seed face the same demand.
+Each stream is derived from the seed and the fixed number of the stream. Adding a stream therefore
+never changes another, and arms of an experiment that run with the same seed face the same demand.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import numpy as np
 class Stream(IntEnum):
     """The named streams.
 
-    A stream's number determines its random numbers in every run, so it is never changed or reused.
+    The random numbers of a stream depend on its number here, which is therefore never changed or
+    reused.
     """
 
     LAYOUT = 0
@@ -39,15 +40,15 @@ class Stream(IntEnum):
 
 
 def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:
-    """Return the random generator of one stream.
+    """Return the random generator of a stream or of one of its substreams.
 
     Parameters
     ----------
     seed
         The run's (or layout's) seed, 0 or greater.
     path
-        Further numbers that select a substream, for example the ordinal of an order; each path
-        yields a sequence of its own.
+        Numbers that select a substream, for example the ordinal of an order; each path yields a
+        sequence of its own. Without them, the stream itself is meant.
     """
     sequence = np.random.SeedSequence(seed, spawn_key=(int(stream), *path))
     return np.random.Generator(np.random.PCG64(sequence))

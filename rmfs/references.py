@@ -46,7 +46,7 @@ def resolve(reference: str | type, base: type[T], what: str) -> type[T]:
     base
         Required base class.
     what
-        Description for error messages, such as "measure".
+        What the class must be, for error messages, such as "measure".
 
     Raises
     ------
@@ -67,7 +67,7 @@ _INSTALLED_ONLY: ContextVar[bool] = ContextVar("_INSTALLED_ONLY", default=False)
 
 @contextmanager
 def installed_only() -> Iterator[None]:
-    """Return a context in which `require_allowed` refuses references to code.
+    """Return a context in which `require_allowed` refuses references such as `module:Class`.
 
     It is used for requests, such as those from a web page, which may name installed classes but
     must not run code of their own.
@@ -80,12 +80,14 @@ def installed_only() -> Iterator[None]:
 
 
 def require_allowed(reference: str) -> None:
-    """Raise an error if references to code are refused; nothing is imported.
+    """Raise an error if references to classes are refused at present.
+
+    The reference itself is not examined; it only appears in the message.
 
     Raises
     ------
     InputError
-        Within `installed_only`, whatever the reference.
+        Within the context `installed_only`.
     """
     if _INSTALLED_ONLY.get():
         raise InputError(
@@ -99,7 +101,7 @@ def is_reference(text: str) -> bool:
 
 
 def anchored(reference: str, folder: Path | None = None) -> str:
-    """Return a reference that is valid in any working directory.
+    """Return a reference that, if it names a file, does not depend on the working directory.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Checks that a run or layout fits into memory before it is started."""
+"""Checks in advance whether a run, or a layout to be generated, fits into memory."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def spoken(size: float) -> str:
 def available() -> float:
     """Return how many bytes this process may still allocate; infinite if that is unknown.
 
-    This is the machine's available memory or, if that is less, what is left of the process's own
+    This is the smaller of the machine's available memory and what is left of the process's own
     limit.
     """
     limits = [float("inf")]

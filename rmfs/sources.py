@@ -1,8 +1,8 @@
-"""The user's source files that a class depends on: its module and everything it imports.
+"""The user's source files that a class depends on: its module and the modules imported from there.
 
 Imports are found by parsing the source text, so the answer does not depend on what the current
-process has imported. Python, rmfs and other installed packages are identified by their version
-and not by their files.
+process has imported. Python, rmfs and installed packages other than that of the class are left
+out, since their versions identify them.
 """
 
 from __future__ import annotations

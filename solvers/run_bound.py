@@ -1,8 +1,8 @@
 """The proven bound on units per hour in a warehouse, computed from its layout and SKUs.
 
-The input consists of kinematics, handling times and the capacity of pods, none of which depends on
-controllers, demand or seed. Therefore one number holds for all runs of a layout with the same SKUs
-and the same duration.
+The bound depends on travel and handling times, the capacity of pods, and the numbers of robots and
+stations, but not on controllers, demand or seed. Therefore one number holds for all runs of a
+layout with the same SKUs and the same duration.
 """
 
 from __future__ import annotations
@@ -63,8 +63,8 @@ def units_per_h_keeping_stock(
     """Return an upper bound on units per hour for each fleet, for runs that keep their stock.
 
     Such a run stores at least as many units as it picks. Not even a controller that knew all future
-    orders could exceed the bound, which holds for any choice of orders, pods and places. Each
-    bundle has the number of units given by its SKU.
+    orders could exceed the bound, which holds for any choice of orders, pods and places. It assumes
+    that every bundle has the number of units specified for its SKU (`bundle_units`).
 
     Parameters
     ----------

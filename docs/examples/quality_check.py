@@ -38,7 +38,7 @@ class CheckTask(VisitTask):
 
 
 class CheckStation(Station[CheckTask]):
-    """A station that counts the pods it has passed."""
+    """A station that counts the pods inspected there."""
 
     passed = 0
 
@@ -64,7 +64,7 @@ class EveryNth(VisitController[CheckStation]):
         self._due: set[int] = set()
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """Count visits of pick stations."""
+        """Count visits to pick stations; every n-th pod is due for a check."""
         if isinstance(self.view.all_stations[station], PickStation):
             self._visits += 1
             if self._visits % self.parameters.every == 0:
@@ -83,7 +83,7 @@ class Checks(Measure):
     """Columns of the footprint about checks."""
 
     columns = (
-        Column("pods_checked", INTEGER, "pods", "Pods that were at a check"),
+        Column("pods_checked", INTEGER, "pods", "Visits of pods to checks"),
         Column("check_idle_share", REAL, "share", "Share of time in which checks have no pod"),
     )
 

@@ -27,7 +27,10 @@ Range = tuple[float, float]
 def calibrate(
     target: Annotated[float, typer.Option(help="The desired mean.")],
     between: Annotated[
-        Range, typer.Option(metavar="LOW HIGH", help="Range that contains the level.")
+        Range,
+        typer.Option(
+            metavar="LOW HIGH", help="Range in which the value of the parameter is sought."
+        ),
     ],
     layout: LayoutOption = "default",
     scenario: ScenarioOption = "default",

@@ -62,8 +62,8 @@ class Goal:
     confidence
         Required probability that the mean is within the tolerance. Default 0.95.
     search_seeds
-        Number of seeds at each level of the search. It is doubled as long as the target does not
-        lie between the means at both ends of the range. Default 4.
+        Number of seeds at each level of the search. It is doubled, up to three times, while the
+        target does not lie between the means at `low` and `high`. Default 4.
     test_seeds
         Number of seeds in the first stage of a test. Default 10.
     most_runs
@@ -300,8 +300,8 @@ def calibrate(goal: Goal, respond: Respond, watch: Callable[[Step], None] = prin
     goal
         The goal.
     respond
-        Function of a level and seeds that returns the response of each seed, shape (N,). The
-        expected response must be monotone in the level.
+        Function that takes a level and seeds, and returns the response for each seed, shape (N,).
+        The expected response must be monotone in the level.
     watch
         Function called with every step as soon as it has been evaluated.
 

@@ -1,4 +1,4 @@
-"""The response of a calibration: a footprint column of runs that are stored like an experiment."""
+"""The response of a calibration: a footprint column of runs, stored like those of an experiment."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Runs:
-    """Runs that differ in one parameter and their seed.
+    """Runs that differ only in one parameter and in their seed.
 
     Runs that are already stored are not repeated, so an interrupted calibration can be resumed.
 

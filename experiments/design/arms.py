@@ -51,7 +51,8 @@ class Arm:
     name
         Name, unique in the design.
     levels
-        For each factor the displayed level: a number, a string, a boolean, or None.
+        Level of each factor as shown in tables: a number, a string or a boolean, or None if neither
+        the arm nor the design's `base` sets the factor.
     inputs
         Name or path of layout, scenario and controllers.
     overrides
@@ -59,7 +60,7 @@ class Arm:
     pacing
         How simulated time accounts for the computation of optimisers.
     digest
-        Hash of everything that determines a run except its seed; empty until resolved.
+        Hash of everything that determines a run except its seed; empty until the inputs are read.
     """
 
     name: str
@@ -72,21 +73,21 @@ class Arm:
 
 @dataclass(frozen=True)
 class Level:
-    """One level of one factor.
+    """One level of one factor, or one entry of the design's list of arms.
 
     Attributes
     ----------
     shown
-        The values shown in the columns of a result table.
+        Values shown in a result table, by column.
     settings
-        Parameters that the level sets, by dotted path.
+        Values of the parameters that the level sets, by dotted path.
     name
         The part of the arm's name that stands for the level.
     raw
         For each column, the values by which the design's `exclude` may refer to this level.
     of_grid
-        Whether the level belongs to a factor of the grid, not to the design's list of arms. In the
-        arm's name, a level of the grid stands after its factor (`factor=level`).
+        Whether this is a level of a factor of the grid (the design's `factors`), not an entry of
+        the list of arms. In the arm's name, such a level stands after its factor (`factor=level`).
     """
 
     shown: dict[str, Any]
@@ -97,7 +98,7 @@ class Level:
 
 
 def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
-    """Return the arms of a design in the order of its factors, and the errors found in them.
+    """Return the arms of a design, and the errors found while making them.
 
     Parameters
     ----------

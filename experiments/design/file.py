@@ -40,7 +40,8 @@ def _goal(column: str, stated: Goal | None) -> Goal:
     better = better_of(column)
     if better == "neither":
         raise ValueError(
-            f'the data dictionary states no goal for {column} is better: add goal = "max" or "min"'
+            f"the data dictionary does not say whether more or less {column} is better: add "
+            'goal = "max" or "min"'
         )
     return "max" if better == "more" else "min"
 
@@ -84,7 +85,7 @@ class Until(Strict):
 
 
 class Select(Strict):
-    """Selection of the best arm with limited error probability: KN of Kim and Nelson (2001)."""
+    """Selection of the best arm with limited error probability: procedure KN (Kim, Nelson 2001)."""
 
     procedure: Literal["kim-nelson"] = "kim-nelson"
     column: Measure
@@ -110,7 +111,7 @@ class Select(Strict):
 class Stage(Strict):
     """One part of an experiment; the next one starts when it has ended.
 
-    All arms of a stage get the seeds of the stage; `until` and `select` then add further seeds.
+    All arms of a stage get the seeds of the stage; `until` or `select` may then add further seeds.
     """
 
     name: str = Field(min_length=1)
@@ -212,7 +213,7 @@ class DesignFile(Strict):
         return self
 
     def seeds_of(self, stage: Stage | None = None) -> list[int]:
-        """Return the seeds that every arm gets in a stage: the stage's, or else the design's."""
+        """Return the initial seeds of every arm in a stage: the stage's, or else the design's."""
         for given in (stage, self):
             if given is not None and given.seeds is not None:
                 return given.seeds

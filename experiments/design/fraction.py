@@ -1,12 +1,14 @@
-"""Fractions of a grid that estimate the main effects as precisely as possible.
+"""Fractional designs: a choice of arms from which main effects can be estimated precisely.
 
 Command: `python -m rmfs.experiments.design.fraction`.
 
-A full factorial of many rules has thousands of arms. For a screening, far fewer suffice to estimate
-the effects of the factors, if their levels are well balanced. The arms chosen here maximise the
-determinant of the information matrix of the main effects (D-optimality): starting from a random
-choice, the best exchange of a chosen arm for another one is made repeatedly (Fedorov 1972). The
-result is written to a file, so that the arms of a study do not depend on the machine.
+If the factors are the rules of several decision problems, the grid of all combinations has
+thousands of arms. For a screening, far fewer arms suffice to estimate the main effects, if the
+levels of the factors are well balanced among them. The arms are chosen such that the determinant of
+the information matrix of the main effects is large (D-optimality): the search starts from a random
+choice and repeatedly makes the exchange of one arm that increases the determinant most, until no
+exchange increases it (Fedorov 1972). The result is written to a file, so that the arms of a study
+do not depend on the machine.
 """
 
 from __future__ import annotations
@@ -48,8 +50,8 @@ def main_effects(levels: Sequence[Sequence[object]]) -> NDArray[np.float64]:
 
     Returns
     -------
-    A column of ones and, for each level of each factor except the factor's last, a column that is 1
-    at this level, -1 at the last level, and 0 otherwise (effect coding).
+    A column of ones and, for each factor, one column for every level but the last: 1 for arms with
+    this level, -1 for arms with the factor's last level, and 0 otherwise (effect coding).
     """
     columns = [np.ones(len(levels))]
     for factor in zip(*levels, strict=True):
@@ -112,7 +114,7 @@ def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]
 
 
 def efficiency(rows: NDArray[np.float64], chosen: Sequence[int]) -> float:
-    """Return the D-efficiency of chosen rows: information per arm, relative to the full grid."""
+    """Return the D-efficiency: information per row in the chosen rows, relative to all rows."""
     part, whole = rows[list(chosen)], rows
     parameters = rows.shape[1]
     share = np.linalg.slogdet(part.T @ part)[1] - np.linalg.slogdet(whole.T @ whole)[1]
@@ -120,14 +122,14 @@ def efficiency(rows: NDArray[np.float64], chosen: Sequence[int]) -> float:
 
 
 def fraction(made: Sequence[Arm], count: int, seed: int = 0) -> tuple[list[Arm], float]:
-    """Choose arms; return the arms, and the D-efficiency of the choice."""
+    """Choose `count` of the given arms; return them, and the D-efficiency of the choice."""
     rows = main_effects([list(arm.levels.values()) for arm in made])
     chosen = d_optimal(rows, count, seed)
     return [made[number] for number in chosen], efficiency(rows, chosen)
 
 
 def to_csv(made: Sequence[Arm]) -> str:
-    """Return arms as the CSV text of an `only_file`: a row per arm, a column per factor."""
+    """Return arms as CSV text for a design's `only_file`: a row per arm, a column per factor."""
     short = factor_names(made[0].levels)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -138,7 +140,7 @@ def to_csv(made: Sequence[Arm]) -> str:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Choose a fraction of a design's grid and write it."""
+    """Choose some arms of a design, regardless of its `only_file`, and write them to a file."""
     parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.design.fraction")
     parser.add_argument("design", help="a design file or the name of a shipped one")
     parser.add_argument("count", type=int, help="how many arms")

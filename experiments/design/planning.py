@@ -1,4 +1,4 @@
-"""A design with everything resolved: arms with digests, input files with hashes, errors."""
+"""Plans: the arms of a design with their digests, the hashes of its input files, and errors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class PlanError(InputError):
     Parameters
     ----------
     problems
-        Every error found, each naming arm and key.
+        Messages of all errors found.
     """
 
     def __init__(self, source: str, problems: list[str]) -> None:
@@ -47,18 +47,18 @@ class PlanError(InputError):
 
 @dataclass(frozen=True)
 class Plan:
-    """The resolved contents of an experiment.
+    """A design, its arms with their digests, and the hashes of its input files.
 
     Attributes
     ----------
     table
-        The design file as written.
+        The contents of the design file, with the changes that `plan` was asked to make.
     arms
         Arms in the order of the design.
     files
-        Hash of every input file.
+        Hash of every input file, by its name.
     problems
-        Errors of the arms; a plan with errors cannot be run.
+        Errors in the design's arms and inputs; a plan with errors cannot be run.
     measures
         The user's measures, as described by `rmfs.measure.registry.described`.
     source
@@ -91,7 +91,7 @@ class Plan:
         return factor_names(self.factors)
 
     def arm(self, name: str) -> Arm:
-        """Return the arm with a name.
+        """Return the arm of this name.
 
         Raises
         ------
@@ -171,7 +171,7 @@ def plan(
     without: Collection[str] = (),
     told: Callable[[int, int], None] | None = None,
 ) -> Plan:
-    """Read a design and resolve all of its arms.
+    """Read a design, read the inputs of all its arms, and compute the digests of the arms.
 
     Parameters
     ----------
@@ -180,12 +180,12 @@ def plan(
     base
         Entries that replace or extend those of the design's table `base`.
     replications
-        Number of seeds, instead of the design's own; only for designs without stages. If the design
-        lists its seeds, the first ones of the list are used.
+        Number of seeds to use instead of the design's number; only for designs without stages. If
+        the design lists its seeds, the first ones of the list are used.
     without
         Names of arms to leave out.
     told
-        Function called with the number of arms resolved so far and in total.
+        Function called before each arm, with the number of arms done and the number of all arms.
 
     Raises
     ------
@@ -214,14 +214,16 @@ def plan_of(
     without: Collection[str] = (),
     told: Callable[[int, int], None] | None = None,
 ) -> Plan:
-    """Resolve all arms of a design that is given as the content of a design file; see `plan`.
+    """Return the plan of a design that is given as a table, not as a file; see `plan`.
 
     Parameters
     ----------
+    table
+        The contents of a design file.
     folder
         Folder in which files are sought first.
     source
-        Origin of the design, for errors.
+        Origin of the design, for error messages.
     """
     measures = design_file.own_measures(table, folder)
     design = config.validate(DesignFile, table, source)
@@ -246,7 +248,7 @@ def plan_of(
 
 
 def load(folder: Path) -> Plan:
-    """Load the plan with which results were made.
+    """Load the plan from a folder of results.
 
     Raises
     ------

@@ -1,8 +1,9 @@
 """Loading the inputs of an arm, and a digest of everything that determines its runs.
 
-The digest depends on content, not on text: a comment in a file or another name of a layout does not
-change it, but one more robot, another rule or a changed SKU file does. Runs are stored under their
-digest, so that finished runs are found again and outdated ones are detected.
+The digest depends on content, not on text: it stays the same if a comment is added to a file or a
+layout is renamed, but changes with the number of robots, with a rule or with the contents of an SKU
+file. Runs are stored with this digest, so that finished runs are found again and outdated ones are
+detected.
 """
 
 from __future__ import annotations
@@ -45,15 +46,15 @@ class Inputs:
 
 @dataclass
 class Resolver:
-    """Loads the inputs of many arms; every combination of file and parameters is loaded once.
+    """Loads the inputs of many arms; every combination of file and parameters is loaded only once.
 
     Attributes
     ----------
     measures
-        The user's own measures. Their code determines columns of a run, so it is part of the
+        The user's own measures. Their code determines columns of the results, so it is part of the
         digest.
     files
-        Hash of every file read so far, by the name under which it was given.
+        Hash of every file read so far, by the name that `file_name` returns.
     """
 
     allow_not_well_formed: bool = False
@@ -68,9 +69,9 @@ class Resolver:
         Parameters
         ----------
         check
-            Whether the traces of its runs are checked.
+            Whether the traces of the arm's runs are checked.
         seeded
-            Parameters whose value is the seed of the run.
+            Parameters that are set to the seed of the run.
         """
         found: dict[str, Any] = {}
         problems: list[str] = []
@@ -183,14 +184,14 @@ def file_hash(path: Path) -> str:
 
 
 def file_name(path: Path) -> str:
-    """Return an input file's name in a plan; for shipped files, it is the same on all machines."""
+    """Return the name of an input file in plans; a shipped file has the same name everywhere."""
     if path.is_relative_to(instances.ROOT):
         return f"{_SHIPPED}{path.relative_to(instances.ROOT).as_posix()}"
     return str(path.absolute())
 
 
 def present_hash(name: str) -> str:
-    """Return the present hash of an input file; empty if the file does not exist."""
+    """Return the present hash of the file that a plan names; empty if the file does not exist."""
     shipped = name.startswith(_SHIPPED)
     path = instances.ROOT / name.removeprefix(_SHIPPED) if shipped else Path(name)
     return file_hash(path) if path.is_file() else ""

@@ -30,8 +30,8 @@ class Wanted:
     arm
         Name of the arm.
     replication
-        Seed as given in the design. Without common random numbers, the run's seed is derived from
-        it and the arm.
+        With common random numbers, the seed of the run; without them, the number from which, with
+        the arm's digest, the seed is derived (see `Plan.seed`).
     """
 
     stage: str
@@ -50,8 +50,8 @@ class Schedule:
     complete
         Whether no further runs will be added.
     remarks
-        What the stages have decided from the results, such as which arms take part in the next
-        stage, one line each.
+        What the stages have decided from the results, one line per decision: for example, which
+        arms take part in the next stage.
     """
 
     runs: list[Wanted]

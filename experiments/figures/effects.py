@@ -23,10 +23,10 @@ def effects(
     names: Sequence[str] | None = None,
     confidence: float = 0.95,
 ) -> None:
-    """Draw the main effect of every factor on a common scale.
+    """Draw the main effect of every factor: the mean of a column at each level.
 
-    The interval of a level is computed from the means over all arms with this level, seed by seed;
-    it is valid for these arms only, not for other possible arms.
+    For the confidence interval of a level, the column is first averaged, seed by seed, over all
+    arms with this level. The interval is valid for these arms only, not for other possible arms.
 
     Parameters
     ----------

@@ -31,11 +31,11 @@ def interaction(
     confidence: float = 0.95,
     legend: bool = True,
 ) -> None:
-    """Draw the mean at each level of a factor, with one line per level of another factor.
+    """Draw the mean of a column at each level of `across`, with one line per level of `by`.
 
-    Parallel lines mean that there is no interaction. The interval of a point is computed from the
-    means over all arms with the point's two levels, seed by seed. Combinations missing from the
-    design leave gaps.
+    Parallel lines mean that there is no interaction. For the confidence interval of a point, the
+    column is first averaged, seed by seed, over all arms with the point's two levels. Combinations
+    missing from the design leave gaps.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def interaction(
     by
         Factor with one line per level.
     names
-        Displayed names of both factors. Default: as in the frame.
+        Displayed names of the factors `across` and `by`. Default: as in the frame.
     legend
         Whether to draw a legend of the lines. Default: yes.
     """

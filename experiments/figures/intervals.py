@@ -1,4 +1,4 @@
-"""Interval plot: each arm's seeds, mean and confidence interval."""
+"""Interval plot: the single runs of each arm, their mean and its confidence interval."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Line plot: means over a numerical column, with their intervals."""
+"""Line plot: the mean of a measure, with its interval, at each value of a numerical column."""
 
 from __future__ import annotations
 

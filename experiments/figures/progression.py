@@ -28,14 +28,14 @@ def progression(
     label: str = "{arm}",
     style: str = "-",
 ) -> None:
-    """Draw a count per hour over time, with one line per arm.
+    """Draw the hourly rate of a count over time, with one line per arm.
 
     Parameters
     ----------
     series
         The table `series` of runs (`experiments.load(DIR, table="series")`).
     column
-        A count per interval, such as `orders_completed`.
+        A count in each interval of the table, such as `orders_completed`.
     bin_s
         Time covered by one point, in s. Default: an hour.
     label
@@ -58,7 +58,7 @@ def progression(
 
 
 def per_bin(series: pd.DataFrame, column: str, bin_s: float) -> pd.DataFrame:
-    """Return the rate per hour of every run in bins of time.
+    """Return the hourly rate of a count in each run and each bin of time.
 
     The columns are `arm`, `replication`, `hour` (the middle of the bin) and `rate`. An incomplete
     last bin is left out.

@@ -42,9 +42,9 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
 
     Returns
     -------
-    The frame with `distance_per_order_m`, metres of all robots per completed order, and
-    `station_share`, units per hour as a share of the capacity of all stations. If the design has a
-    factor `rules`, its levels become `controllers`.
+    The frame with `distance_per_order_m`, the metres that all robots together drive per completed
+    order, and `station_share`, units per hour as a share of the capacity of all pick stations. If
+    the design has a factor `rules`, the column `controllers` shows the levels of this factor.
     """
     limit = frame["pick_stations"] * station_units_per_h
     if RULES in frame:
@@ -56,16 +56,18 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
 
 
 def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = COLUMNS) -> Table:
-    """Return a row for each group of runs: means with intervals, decision times, shares and bounds.
+    """Return a row of means over seeds for each group of runs.
 
-    The shares are the four columns `*_decision_share` of the footprint.
+    The row shows the means of `columns` with intervals, and without intervals the means of the
+    optimisers' decision time, of the four columns `*_decision_share` of the footprint, and of the
+    bound on units per hour.
 
     Parameters
     ----------
     frame
         As `completed` returns it.
     groups
-        Columns whose values identify the rows.
+        Columns; runs with the same values in all of them form a group.
     columns
         Measures shown with intervals.
     """
@@ -99,7 +101,7 @@ def gains(
     baseline: str,
     columns: Sequence[str] = (*RATES, *EFFORT),
 ) -> Table:
-    """Return the gain of each controller over the baseline, in percent, paired by seed.
+    """Return the differences of all controllers to the baseline, in percent, paired by seed.
 
     Parameters
     ----------
@@ -128,13 +130,13 @@ def gains(
 def of_optimiser(
     frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = (*RATES, *EFFORT)
 ) -> Table:
-    """Return the gain of optimisers over their own start rules, in percent, paired by seed.
+    """Return the differences of optimisers to their own start rules, in percent, paired by seed.
 
     Parameters
     ----------
     frame
-        As `completed` returns it. Each level of `controllers` is compared with the level of that
-        name plus `START`, if there is one.
+        As `completed` returns it. Each level of its column `controllers` is compared with the level
+        of the same name plus the suffix `START`, if there is one.
     groups
         Columns. Controllers are compared separately for each combination of these columns' values.
     columns
@@ -188,7 +190,8 @@ def _percent(
 def too_few(frame: pd.DataFrame) -> list[str]:
     """Return the names of arms with a run in which optimisers made too few decisions.
 
-    Runs without an optimiser are skipped.
+    Too few means that `optimiser_decision_share` is below `LEAST_SHARE`. Runs without an optimiser
+    are skipped.
     """
     asked = frame[frame["optimiser_calls"] > 0]
     return sorted(asked.loc[asked["optimiser_decision_share"] < LEAST_SHARE, "arm"].unique())
@@ -197,7 +200,7 @@ def too_few(frame: pd.DataFrame) -> list[str]:
 def require_optimised(study: Study, shown: pd.DataFrame | None = None) -> None:
     """Refuse results in which optimisers made too few decisions.
 
-    In a smoke run, which ends before optimisers decide much, this is only a warning.
+    With the option `--smoke`, runs end before optimisers decide much, so there is only a warning.
 
     Parameters
     ----------

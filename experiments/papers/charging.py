@@ -1,16 +1,20 @@
-"""The cost of charging: robots needed with and without it, by kind of recovery and by rule.
+"""The cost of charging: robots needed with each kind of battery recovery; rules of CA compared.
 
-The designs `charging` and, with `--large`, `charging-large` run fleets of different sizes on the
-default and the large site: without batteries, with plug-in places, with battery swap, and with
-queue waypoints that charge waiting robots. The study publishes units per hour, the number of robots
+The study runs fleets of different sizes: by the design `charging` at the default site (the shipped
+layout `default`) or, with `--large`, by the design `charging-large` at the large site (layout
+`large`). There are four cases: robots without batteries, plug-in chargers, swap stations, and queue
+waypoints that charge waiting robots. The study publishes units per hour, the number of robots
 needed for 95 % of the capacity of the pick stations (interpolated between fleets, seed by seed),
-and by how many percent this number exceeds the one without batteries. `--rules` compares the rules
-and the optimiser of charge assignment (CA) with robots that need no energy, and with the rule
-`threshold`, paired by seed. It uses the design `charging-rules` or, with `--demand`,
-`charging-demand`, in which periods of high and low demand alternate. For comparison, Zou et al.
-(2018, doi 10.1016/j.ejor.2017.12.008) report that more than 15 % more robots are needed with
-battery recovery than without, and that the retrieval time with swapping is up to 4.88 % better than
-with plug-in charging.
+and by how many percent this number exceeds the number needed without batteries.
+
+With `--rules`, there is a single fleet size instead, and charge assignment (CA) by each of the
+rules and by the optimiser. The study then publishes differences to runs without batteries and to
+runs under the rule `threshold`, paired by seed. The design is `charging-rules` or, with `--demand`,
+`charging-demand`, in which periods of high and low demand alternate.
+
+For comparison, Zou et al. (2018, doi 10.1016/j.ejor.2017.12.008) report that the number of robots
+is underestimated by more than 15 % if battery recovery is ignored, and that swapping shortens the
+retrieval time by at most 4.88 %, compared with plug-in charging.
 """
 
 from __future__ import annotations
@@ -73,9 +77,9 @@ def robots_for(robots: Sequence[float], share: Sequence[float], enough: float = 
 
 
 def needed(frame: pd.DataFrame, enough: float = ENOUGH) -> Table:
-    """Return the number of robots needed with each kind of recovery.
+    """Return the number of robots needed with each kind of battery recovery.
 
-    The table also shows by how many percent this number exceeds the one without batteries.
+    The table also shows by how many percent this number exceeds the one needed without batteries.
 
     Parameters
     ----------

@@ -1,9 +1,11 @@
 """The library of decisions: best known results, and a comparison of solvers.
 
-With `--time`, methods are timed on the library (`rmfs decisions profile`, question by question) and
-the times are published; without it, all tables and pictures are made from the published times.
-Families whose questions are assignment or flow problems are left out, as these are always solved to
-optimality.
+The study publishes, by family and size of the questions, how many best known values are proven
+optimal, and how far the answers given in runs are from the best known values. It also compares
+solution methods, from their times in `decision-times.csv`. With `--time`, this table is first
+measured: every method solves some questions of each family under several limits of work, as in
+`rmfs decisions profile`. Only the families in `TIMED` are timed; in the others, all best known
+values are proven optimal.
 """
 
 from __future__ import annotations
@@ -62,7 +64,7 @@ SECONDS = [10.0 ** (step / 8 - 3) for step in range(33)]
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Time methods, or write the pages from published times."""
+    """Time the methods if `--time` is given, and publish the tables and pictures."""
     made = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     made.add_argument("--library", type=Path, default=LIBRARY, help="folder of the library")
     made.add_argument("--published", type=Path, default=PUBLISHED, help="folder of tables")
@@ -102,7 +104,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def state(known: pd.DataFrame) -> pd.DataFrame:
-    """Return counts of questions and of proven optima, and gaps, by family and size.
+    """Return, by family and size, the numbers of questions and proven optima, and gaps to bounds.
 
     Parameters
     ----------
@@ -123,7 +125,7 @@ def state(known: pd.DataFrame) -> pd.DataFrame:
 
 
 def online(library: Library) -> pd.DataFrame:
-    """Compare the answers given in runs, under the limits of controllers, with the best known ones.
+    """Compare answers given in runs, under controllers' limits of work, with the best known ones.
 
     Parameters
     ----------
@@ -162,7 +164,7 @@ def compared(table: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     table
-        The table that `with_gaps` returns, with the column `size`.
+        As `with_gaps` returns it, with the additional column `size`.
     """
     areas = integrals(table)
     areas["size"] = areas["question"].map(table.groupby("question")["size"].first())
@@ -206,7 +208,7 @@ def _by_size(found: pd.DataFrame) -> pd.DataFrame:
 
 
 def publish_table(path: Path, rows: pd.DataFrame | list[dict[str, Any]], **more: Any) -> None:
-    """Publish a table as a page with its provenance, and print it."""
+    """Publish a table as a page, with a provenance file beside it, and print the table."""
     frame = pd.DataFrame(rows)
     _publish(path, frame.to_markdown(index=False) + "\n", **more)
     print(frame.to_string(index=False))

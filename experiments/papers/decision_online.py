@@ -1,8 +1,10 @@
-"""Questions of the library, answered by the default search of controllers and by other searches.
+"""Questions of the library of decisions, answered with default and other settings.
 
-Each question is answered as in its run, from the plan that the controller had, but with the method
-and limits of a setting. The study publishes the primal gap to the best known value, and the
-processor time.
+Each question of the families `planning` and `sequence` (sequences of tasks for robots) is answered
+once under each setting in `SETTINGS`, which gives the method and its limits. Everything else is as
+in the run in which a controller asked the question; for example, a search starts from the plan that
+the controller had. The study publishes the primal gap to the best known value, and the processor
+time.
 """
 
 from __future__ import annotations
@@ -35,7 +37,7 @@ SIZES = ("medium", "real", "double")
 
 
 def planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]]:
-    """Return a function that gives the method and limits for a planning question.
+    """Return a function that gives the method and limits for a question of the family `planning`.
 
     Parameters
     ----------
@@ -59,7 +61,7 @@ def _routed(method: str, work_s: float) -> Callable[[Decision], dict[str, Any]]:
 
 
 def searched(steps: int) -> Callable[[Decision], dict[str, Any]]:
-    """Return a function that gives the method and limits for a routing question.
+    """Return a function that gives the method and limits for a question of the family `sequence`.
 
     Parameters
     ----------
@@ -113,7 +115,7 @@ def answered(library: Library, sizes: tuple[str, ...]) -> Iterator[dict[str, Any
     library
         The library.
     sizes
-        Sizes of the questions.
+        Sizes of the questions to answer.
     """
     for family, settings in SETTINGS.items():
         for size in sizes:

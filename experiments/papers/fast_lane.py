@@ -1,11 +1,12 @@
 """The default rules compared with those of RAWSim-O over 48 h, with and without the fast lane.
 
 The inputs correspond to RAWSim-O's instances `fastlane`: layout and controllers are the same, and
-SKUs have the same distribution. Ten seeds are compared with one measured run of RAWSim-O for each
-arm. RAWSim-O plans paths by FAR (flow annotation replanning), and its robots wait for the next step
-of the simulation before every hop, lift and set-down. Here paths are planned by the planner
-`time-windows`, by FAR, and by FAR with the mean of that wait added to turning and lifting times.
-This separates the effect of the rules from that of driving.
+SKUs have the same distribution. Means over ten seeds are compared with two runs of RAWSim-O, one
+with the fast lane and one without. RAWSim-O plans paths by FAR (flow annotation replanning), and
+its robots wait for the next step of the simulation before every straight drive, lift and set-down.
+Here, each setting of the fast lane is run in three arms: with the planner `time-windows`, with FAR,
+and with FAR where the mean of that wait is added to the times for turning and lifting. Comparing
+the three arms separates the effect of the rules from that of driving.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ THEIRS = {
 
 
 def beside(frame: pd.DataFrame) -> Table:
-    """Return the means of every arm, and their difference to RAWSim-O in percent of its values."""
+    """Return the means of every arm, and by how many percent they differ from RAWSim-O's values."""
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for (driving, lane), runs in frame.groupby([DRIVING, LANE], sort=False):
         row = {("seeds", ""): float(len(runs))}

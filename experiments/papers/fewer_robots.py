@@ -1,10 +1,11 @@
 """The number of robots that stations need: rules compared with joint decisions on orders and pods.
 
-The study shows units per hour over the size of the fleet at the small site, with the capacity of
-the stations and the proven bound, and the smallest fleet with which each controller reaches 95 % of
-that capacity. The study takes about 0.2 CPU hours. With `--later` (0.2 CPU hours), orders that
-arrive over time are included, and with a backlog the third hour is measured instead of the first,
-because a small fleet initially picks stock that it has no time to replenish.
+The study runs fleets of different sizes at the small site (the shipped layout `small`), with a
+backlog, and measures the first hour. It shows units per hour and their proven bound by fleet size,
+and the smallest fleet with which each controller reaches 95 % of the capacity of the pick stations.
+With `--later`, the third hour is measured instead, because a small fleet initially picks stock that
+it has no time to replenish; in further runs, orders arrive over time instead of a constant backlog.
+Each of the two variants takes about 0.3 CPU hours.
 """
 
 from __future__ import annotations
@@ -50,14 +51,14 @@ COLUMNS = (
 
 
 def needed(frame: pd.DataFrame, groups: Sequence[str], enough: float = ENOUGH) -> Table:
-    """Return the smallest fleet with which each controller keeps the stations busy.
+    """Return the smallest fleet that reaches a share of the stations' capacity, for each group.
 
     Parameters
     ----------
     frame
         As `completed` returns it.
     groups
-        Columns whose values identify the rows.
+        Columns; runs with the same values in all of them form a group.
     enough
         Share of the stations' capacity to be reached.
 
@@ -90,13 +91,13 @@ def picture(
     name: str = "fewer-robots.png",
     clairvoyant: Mapping[int, float] | None = None,
 ) -> Path:
-    """Draw units per hour over the fleet size, with the bounds.
+    """Draw units per hour over the fleet size, with upper bounds.
 
     Parameters
     ----------
     clairvoyant
-        Upper bounds on units per hour by fleet size that hold even for controllers that know all
-        future orders; drawn instead of the bounds of the runs.
+        Upper bounds on units per hour, by fleet size, that hold even for controllers that know all
+        future orders. Default: the bounds in `frame` are drawn instead.
     """
     path = study.place(name)
     with saving(path, 6.0, 4.0) as figure:

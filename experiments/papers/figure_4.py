@@ -1,7 +1,7 @@
 """Figure 4 of Merschformann, Xie and Li (2018): a layout with two stations of each kind.
 
-Nothing is simulated: the picture is drawn from the generator's parameters, and its provenance
-contains the numbers of objects in the layout.
+Nothing is simulated: the layout is generated and drawn. The provenance of the picture states how
+many waypoints, storage locations, pods and so on the layout has.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OVERRIDES: list[tuple[list[str], object]] = [
 
 
 def counts(layout: layouts.Layout) -> dict[str, object]:
-    """Return the numbers of objects in a layout."""
+    """Return how many waypoints, pods and so on a layout has, and whether it is well-formed."""
     return {
         "waypoints": layout.waypoints,
         "edges": len(layout.edge_target),

@@ -1,12 +1,13 @@
 """Figure 5a: a PSA rule exchanged in the middle of a day (Merschformann, Xie, Li 2018).
 
 The paper shows one run of 24 h in which random storage is replaced by nearest storage: from then
-on, the robots drive less and complete more orders. Here ten seeds are run on a layout of the same
-size as RAWSim-O's MaTiMilli, together with two arms that keep one of the rules throughout. The
-effect of the exchange is the difference in differences, paired by seed: second half minus first
-half in the arm with the exchange, minus the same difference with random storage throughout.
+on, the robots drive less and complete more orders. Here three arms are run with ten seeds on a
+layout of the same size as the layout MaTiMilli of RAWSim-O: one with the exchange, one with random
+storage throughout, and one with nearest storage throughout. The effect of the exchange is the
+difference in differences, paired by seed: second half minus first half in the arm with the
+exchange, minus the same difference with random storage throughout.
 
-With `--reference DIR` (the public instances of RAWSim-O) the original layout
+With `--reference DIR` (the folder of RAWSim-O's public instances), the original layout
 `DIR/mati/MaTiMilli.xinst` is used instead; the names of published files then end in `-reference`.
 """
 
@@ -36,14 +37,16 @@ SETTLED_S = 3600.0
 
 
 def halves(series: pd.DataFrame, *, settle_s: float = SETTLED_S) -> pd.DataFrame:
-    """Return the rates per hour of every run before and after the exchange.
+    """Return each run's orders, units and metres per hour before and after the exchange.
+
+    In arms without an exchange, the halves of the run are meant.
 
     Parameters
     ----------
     series
         The time series of the runs.
     settle_s
-        Time left out at the beginning of both halves, in s. Default: an hour.
+        Time left out at the beginning of each half, in s. Default: an hour.
 
     Returns
     -------
@@ -62,9 +65,9 @@ def differences(rated: pd.DataFrame, confidence: float = 0.95) -> pd.DataFrame:
 
     Returns
     -------
-    Means of the two arms (random storage throughout, and with the exchange) in both halves; the
-    difference in differences with its interval; and its ratio to the mean of random storage in the
-    second half (`relative`).
+    Means of two arms (random storage throughout; the exchange) in each half; the difference in
+    differences with its interval, p value and number of seeds; and, as `relative`, this difference
+    divided by the mean of the second half with random storage throughout.
     """
     rows = {}
     for column in COLUMNS:
@@ -91,7 +94,7 @@ def differences(rated: pd.DataFrame, confidence: float = 0.95) -> pd.DataFrame:
 
 
 def as_table(found: pd.DataFrame) -> Table:
-    """Return the differences as a table to publish."""
+    """Return the result of `differences` as a table to publish."""
     half = (found["high"] - found["low"]) / 2
     percent = 100 * found["relative"]
     parts = {

@@ -1,11 +1,12 @@
 """Figure 5b: where robots drive and wait (Merschformann, Xie, Li 2018).
 
 The paper shows a heat map of robot movement, in colours on a logarithmic scale: robots queue at the
-stations, and some areas are close to congestion. Here the visits to each waypoint are averaged over
-the seeds, and a table shows their distribution over the areas of the layout.
+stations, and some areas are close to congestion. Here a layout of the same size as RAWSim-O's
+layout MaTiMilli is used. Robots that pass a waypoint or stop there are counted as its visits, which
+are averaged over the seeds. A table shows how visits and waiting time are distributed over the
+areas of the layout: aisles, storage locations, queues, and the rest.
 
-With `--reference DIR` (the public instances of RAWSim-O) the original layout MaTiMilli is used
-instead of one of the same size.
+With `--reference DIR` (the folder of RAWSim-O's public instances), MaTiMilli itself is used.
 """
 
 from __future__ import annotations
@@ -33,14 +34,14 @@ COUNTS = ("visits", "loaded_visits", "waiting_s")
 
 
 def together(heat: pd.DataFrame) -> pd.DataFrame:
-    """Return the mean counts of every waypoint over the seeds."""
+    """Return visits and waiting time of every waypoint, averaged over the seeds."""
     place = ["waypoint", "tier", "x_m", "y_m"]
     counts = [c for c in heat if c in COUNTS]
     return heat.groupby(place, sort=False)[counts].mean().reset_index()
 
 
 def areas(layout: Layout) -> NDArray[np.str_]:
-    """Return the area of each waypoint."""
+    """Return the name of the area in which each waypoint lies, such as "aisles"."""
     storage, queue = layout.is_storage, layout.is_queue
     aisle = ~storage & ~queue
     for along in (layout.x_m, layout.y_m):
@@ -62,9 +63,9 @@ def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
     Parameters
     ----------
     heat
-        The table `heat` of one arm.
+        The table `heat` of all runs of one arm.
     area
-        Area of each waypoint, shape (N,).
+        Name of the area of each waypoint, as `areas` returns it, shape (N,).
     """
     of_waypoint = area[heat["waypoint"].to_numpy(int)]
     grouped = heat.assign(area=of_waypoint).groupby(["replication", "area"])

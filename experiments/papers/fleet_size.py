@@ -1,8 +1,9 @@
 """The number of robots that a warehouse needs: throughput by fleet size, and gain per robot.
 
-The design `fleet-size` runs fleets of different sizes with two storage rules. The study publishes
-units per hour of every fleet; the gain per additional robot from one fleet to the next, paired by
-seed; and the arms that no other arm dominates in robots and units.
+The design `fleet-size` simulates six fleet sizes, each with two storage rules. The study publishes
+units per hour of every fleet; the gain per additional robot from one fleet to the next larger one,
+paired by seed; and the Pareto front: the arms for which no other arm picks at least as many units
+per hour with at most as many robots.
 """
 
 from __future__ import annotations
@@ -31,21 +32,21 @@ COLUMNS = (UNITS, "distance_per_unit_m", "robot_queueing_share", "pick_station_i
 
 
 def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
-    """Return the gain per additional robot from each fleet to the next, paired by seed.
+    """Return the gain per additional robot from each fleet to the next larger, paired by seed.
 
     Parameters
     ----------
     frame
-        Results of a design with the factor `layout.robots`.
+        Results of a design with two factors, of which one is `layout.robots`.
     rule
-        The other factor; fleets are compared at each of its levels.
+        The other factor; fleets are compared at each of its levels. Default: the storage rule.
     column
-        The measure. Default: units per hour.
+        The measure in which the gain is taken. Default: units per hour.
 
     Returns
     -------
-    One row per step, `RULE, FEWER to MORE robots`: mean and half width of the gain divided by the
-    number of additional robots.
+    One row per level of `rule` and pair of fleets, named `LEVEL, FEWER to MORE robots`: the mean
+    gain per additional robot, the half width of its confidence interval, and the number of seeds.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for level, runs in frame.groupby(rule, sort=False):
@@ -71,7 +72,7 @@ def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
 
 
 def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
-    """Return the arms that no other arm dominates in robots and units, smallest fleet first."""
+    """Return a table of the Pareto front (few robots, high `column`), smallest fleet first."""
     robots = per_arm(frame, "robots")["mean"]
     best = front(robots, per_arm(frame, column)["mean"], "less", "more")
     chosen = frame.set_index("arm").loc[best].reset_index()
@@ -81,7 +82,7 @@ def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
 
 
 def picture(study: Study) -> Path:
-    """Draw units per hour over robots for every arm, and the Pareto front."""
+    """Draw units per hour over the number of robots for every arm, and the Pareto front."""
     path = study.place("fleet-size.png")
     with saving(path, 6.4, 4.2) as figure:
         pareto(study.frame, "robots", UNITS, figure.subplots())

@@ -1,9 +1,9 @@
-"""Upper bounds on the savings by storage locations and choice of robots, with perfect foresight.
+"""How much driving could be saved by perfect foresight in storage locations and choice of robots.
 
-Models for PSA and TA cannot save more than a decision with perfect knowledge of the future. After
-each run of the default rules, two problems are solved to proven optimality: with the same visits at
-the same times, which storage locations would have minimised loaded driving? And which robots would
-have minimised empty driving? This takes about 0.1 CPU hours.
+No model for PSA or TA can save more than decisions with perfect knowledge of the future. After each
+run of the default rules, two problems are therefore solved, with a proven bound: with the same
+visits at the same times, which storage locations would have minimised loaded driving? And which
+choice of robots would have minimised empty driving? The study takes about 0.1 CPU hours.
 """
 
 from __future__ import annotations

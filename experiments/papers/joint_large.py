@@ -1,11 +1,12 @@
 """Joint decisions on orders and pods at a large site: 12 pick stations, 1,200 pods, 45 robots.
 
-Published exact models cannot be solved at this size. The best rules and HADGS (a heuristic of Jiao
-et al. 2025) are compared with the joint controllers of rmfs, with whole and with split orders, for
-a backlog and for orders that arrive over time. For a site of this size (with another layout and
-other orders, so not the same instance), the published results are 6,341 units in 2 h with 0.211 s
-per decision for HADGS, and 8,318 units (96 % of the stations' capacity) with 0.066 s per decision
-for the best heuristic. The study takes about 0.3 CPU hours.
+Published exact models cannot be solved at this size. On the layout `large`, the default rules and
+HADGS (a heuristic of Jiao et al. 2025) are compared with the joint controllers of rmfs (`pile-on`
+with whole orders, `pile-on-split` with split orders), for a backlog and for orders that arrive over
+time. For comparison, a thesis with public instances (GitHub: Aesopz/RAWSIM-O-Aesop) reports results
+for a site of the same size, but with another layout and other orders: 6,341 units in 2 h with
+0.211 s per decision for HADGS, and 8,318 units (96 % of the stations' capacity) with 0.066 s per
+decision for its best heuristic. The study takes about 0.3 CPU hours.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """A lower bound on the number of late orders, whatever is decided and known.
 
-An order is on time only if all its units are handled between its arrival and its due time. Stations
-handle units one after the other, so the orders that arrive and are due within an interval cannot
-need more work than all stations can do in it. The bound assumes that any pod is at any station as
-soon as it is wanted, that everything is in stock, and that orders can be split over stations.
+An order is on time only if all its units are handled between its arrival and its due time. Each
+station handles units one after the other. Consider an interval and the orders that arrive in it and
+are also due in it: those of them that are on time cannot need more work than all stations can do in
+the interval. The bound assumes that any pod is at any station as soon as it is wanted, that
+everything is in stock, and that orders can be split over stations.
 """
 
 from __future__ import annotations
@@ -28,9 +29,10 @@ def fewest_late(
 ) -> int:
     """Return a lower bound on the number of late orders.
 
-    The number of orders on time is at most the optimum of a linear program: for each interval from
-    an arrival to a due time, the orders that arrive and are due within the interval, and are on
-    time, need at most as much work as the length of the interval times the number of stations.
+    A linear program maximises the number of orders on time; all other orders are late. It has one
+    constraint for each interval from an arrival to a due time: among the orders that both arrive
+    and are due in the interval, the work for those on time is at most the length of the interval
+    times the number of stations.
 
     Parameters
     ----------

@@ -1,10 +1,13 @@
 """The cost of motions that begin late, and the benefit of repairing plans.
 
-The design `late-motions` lets motions of the default site begin late with three probabilities and
-two ranges of lateness (how late they begin), as in published benchmarks (0.0005 to 0.02 per motion,
-1 to 200 time units, here seconds), with and without repair of the plans of robots that have to
-wait. The study publishes the loss compared with perfect execution and the effect of repair, both
-paired by seed, and a figure of the loss over the lateness per robot.
+In the design `late-motions`, robots at the default site (layout `default`) begin motions late: each
+motion with a probability of 0.0005, 0.005 or 0.02, and by 1 to 10 s or by 10 to 200 s. These values
+span the range of published benchmarks, with one second per time unit. In this study, lateness is
+the time by which a motion begins late, and perfect execution means that no motion does. With
+repair, robots that have to wait for a late one get new plans; each case is run with and without it.
+The study publishes the change of units per hour compared with perfect execution, and the effect of
+repair, both paired by seed, and a figure of the units per hour over the lateness per robot and
+hour.
 """
 
 from __future__ import annotations
@@ -31,15 +34,16 @@ Rows = dict[str, dict[tuple[str, str], float]]
 
 
 def wide(frame: pd.DataFrame, robots: int, column: str = "units_per_h") -> pd.DataFrame:
-    """Return a measure of one fleet, with one row per seed and one column per kind of lateness."""
+    """Return a measure of one fleet: a row for each seed, a column for each level of `late`."""
     fleet = frame[frame[ROBOTS] == robots]
     return fleet.pivot_table(index="replication", columns=LATE, values=column, sort=False)
 
 
 def losses(frame: pd.DataFrame) -> Table:
-    """Return units per hour by fleet and kind of lateness, and their change in percent.
+    """Return a table of units per hour, their change in percent, total lateness, and repairs.
 
-    The change is relative to perfect execution, and negative if fewer units are picked.
+    There is one row per fleet and level of `late`. The change is relative to perfect execution, and
+    negative if fewer units are picked.
 
     Parameters
     ----------
@@ -73,7 +77,7 @@ def losses(frame: pd.DataFrame) -> Table:
 
 
 def gains(frame: pd.DataFrame) -> Table:
-    """Return the effect of repair, in percent of the units per hour without it."""
+    """Return the change of units per hour by repair, in percent of those without repair."""
     rows: Rows = {}
     for robots in frame[ROBOTS].unique():
         units = wide(frame, robots)
@@ -103,7 +107,7 @@ def per_robot_and_hour(frame: pd.DataFrame) -> pd.Series:
 
 
 def picture(study: Study) -> None:
-    """Plot units per hour, as a share of perfect execution, over lateness per robot and hour."""
+    """Plot units per hour, in percent of perfect execution, over lateness per robot and hour."""
     frame = study.frame.assign(lateness=per_robot_and_hour(study.frame))
     path = study.place("late-motions.png")
     with saving(path, 6.0, 4.0) as figure:

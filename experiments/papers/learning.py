@@ -1,11 +1,14 @@
-"""Comparison of look-ahead, trained linear rules and optimisers with the other rules.
+"""Comparison of look-ahead, trained linear rules and optimisers with plain rules.
 
-The study has four regimes of the small site (kind of demand and number of robots), with seeds not
-used in training. With `--sites`, it has one regime of the default site and one of the large site
-instead. Every arm is compared with the default rules and with the best rule of its regime. The
-measure is units picked or, in the regimes with arrivals and tight due times, orders completed late
-or overdue at the end. p values are corrected by Holm's method over all arms of a regime. A bound
-that holds for all controllers, whatever they know, shows how much room there is for improvement.
+A linear rule chooses the candidate with the greatest weighted sum of features; look-ahead tries out
+decisions in copies of the run (docs: learning). A regime is a site with a kind of demand and a
+number of robots. The study has four regimes at the small site (layout `small`) or, with `--sites`,
+one at the default site and one at the large site (layouts `default` and `large`). The seeds were
+not used in training. Every arm is compared with the default rules and with the best plain rule of
+its regime. In regimes with a backlog, the measure is the number of units picked; in those with
+orders that arrive over time, it is the number of orders completed late, plus those overdue at the
+end. p values are corrected by Holm's method over all arms of a regime. A bound that holds for all
+controllers, whatever they know, shows how much room there is for improvement.
 """
 
 from __future__ import annotations
@@ -47,9 +50,9 @@ def is_rule(policy: str) -> bool:
 
 
 def best_rule(runs: pd.DataFrame, goal: str) -> str:
-    """Return the rule with the best mean in a regime: most units, or fewest late orders.
+    """Return the plain rule with the best mean in a regime: most units, or fewest late orders.
 
-    It is selected with the same seeds as are used in the comparison, which favours it.
+    It is selected from the same runs that are then compared, which favours it.
     """
     rules = runs[runs[POLICY].map(is_rule)]
     means = rules.groupby(POLICY, sort=False)[goal].mean()
@@ -57,7 +60,7 @@ def best_rule(runs: pd.DataFrame, goal: str) -> str:
 
 
 def with_goals(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the results with the column `LATE`: orders completed late, or overdue at the end."""
+    """Return the results with the column `LATE`: orders completed late, plus overdue at the end."""
     return frame.assign(**{LATE: frame["orders_late"] + frame["orders_overdue_end"]})
 
 
@@ -67,14 +70,15 @@ def most_units(runs: pd.DataFrame) -> float:
 
 
 def fewest_late_mean(orders: pd.DataFrame, stations: int, unit_s: float) -> float:
-    """Return a lower bound on the mean number of orders that are completed late or left overdue.
+    """Return a lower bound on the mean number of late orders per run, as in the column `LATE`.
 
     Parameters
     ----------
     orders
-        Table `orders` of runs of one arm, with a column `replication` and the measured time of each
-        run in `start_s` and `end_s`. Orders due in that time are considered; an order that the arm
-        completed before that time is not in the table, which weakens the bound but keeps it valid.
+        Table `orders` of the runs of one arm, with the columns `replication`, `start_s` and `end_s`
+        (start and end of the run's measured time). Orders due in the measured time are considered;
+        orders that the arm completed before it are not in the table, which weakens the bound but
+        keeps it valid.
     stations
         Number of pick stations.
     unit_s
@@ -91,7 +95,7 @@ def fewest_late_mean(orders: pd.DataFrame, stations: int, unit_s: float) -> floa
 
 
 def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
-    """Return means, and gains over the default rules and the best rule, by regime and arm.
+    """Return means, and gains over the default rules and the best plain rule, by regime and arm.
 
     A gain is positive if more units are picked or, where late orders are the measure, fewer orders
     are late.
@@ -99,7 +103,7 @@ def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
     Parameters
     ----------
     frame
-        Results of the design, with `with_goals`.
+        Results of the design, as `with_goals` returns them.
     at_best
         Bound of each regime: an upper bound on units picked, or a lower bound on late orders.
     """
@@ -154,7 +158,7 @@ def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
 
 
 def bounds(study: Study, frame: pd.DataFrame) -> dict[str, float]:
-    """Return the bound on the goal of each regime of a study."""
+    """Return the bound of each regime: most units, or fewest late orders, with any controller."""
     found = {}
     for name, runs in frame.groupby(REGIME, sort=False):
         regime = str(name)

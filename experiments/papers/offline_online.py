@@ -1,10 +1,13 @@
-"""The effect of better answers to questions of the library on the warehouse, by family.
+"""Whether better answers of optimisers also help the warehouse, by family of questions.
 
-Every arm is a method with its limit of work. Its offline gap is the mean primal gap to the best
-known value over the library's questions of its family, answered as the controller of the arm would
-answer them. Online, it is simulated with the same seeds as the other arms of the family. If lower
-gaps come with more units, fewer late orders and less driving, the objective of the questions is a
-good proxy for these measures.
+A question is one decision that a controller asks an optimiser to take; questions of the same kind
+form a family, and the library contains questions recorded in runs (docs: decisions). Every arm
+answers the questions of one family by one method with one limit of work. The offline gap of an arm
+is the mean relative difference (primal gap) between the values of its answers and the best known
+ones, over the library's questions of its family, each answered as the arm's controller would answer
+it. Online, the warehouse is simulated with this controller, with the same seeds in all arms. If
+lower gaps come with more units, fewer late orders and less driving, the objective of the questions
+is a good proxy for these measures.
 """
 
 from __future__ import annotations
@@ -84,7 +87,9 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
-    """Answer the questions of an arm's family as the arm would; return the primal gaps (0 to 1).
+    """Answer questions of the library as an arm would, and return the primal gaps (0 to 1).
+
+    The questions are those of the arm's family that have the given size.
 
     Parameters
     ----------
@@ -93,7 +98,7 @@ def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
     arm
         A key of `ASKED`.
     size
-        Size of the questions.
+        Size of the questions, such as `small`.
     """
     family, changes = ASKED[arm]
     gaps = []
@@ -107,7 +112,7 @@ def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
 
 
 def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
-    """Change the settings of a question; nested tables are changed key by key.
+    """Return a question with changed settings; nested tables are changed key by key.
 
     Parameters
     ----------
@@ -123,14 +128,14 @@ def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
 
 
 def beside(frame: pd.DataFrame, gaps: Mapping[str, list[float]]) -> Table:
-    """Combine offline gaps and online means in one table.
+    """Return a table with the mean offline gap and the means of online measures of every arm.
 
     Parameters
     ----------
     frame
         Results of the runs.
     gaps
-        Offline gaps by arm.
+        Offline gaps of the single questions, by arm.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for arm, offline in gaps.items():
@@ -150,7 +155,7 @@ def beside(frame: pd.DataFrame, gaps: Mapping[str, list[float]]) -> Table:
 
 
 def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
-    """Correlate offline gaps with online measures, paired by seed, within each family.
+    """Return rank correlations of offline gaps with online measures, by family, paired by seed.
 
     Parameters
     ----------
@@ -161,10 +166,10 @@ def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
 
     Returns
     -------
-    One row per family: the number of arms, their largest gap, and the rank correlation of each
-    measure with the gap. For the correlation, the mean of the measure over the family's arms with
-    the same seed is subtracted first. With two arms, the correlation shows only the sign of the
-    effect, and whether it is the same for all seeds.
+    One row per family: the number of arms, the largest of their gaps, and the rank correlation of
+    each measure with the gap. Before the correlation is computed, each value of a measure is
+    reduced by the mean over the family's arms with the same seed. With two arms, the correlation
+    shows only the sign of the effect, and whether it is the same for all seeds.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     of = frame[SOLVER].map(lambda arm: ASKED[arm][0])

@@ -1,13 +1,14 @@
-"""A comparison of all methods of path planning (Merschformann, Xie, Erdmann 2017).
+"""A comparison of all methods of path planning, after Merschformann, Xie and Erdmann (2017).
 
-There are three layouts of the size of that study's instances: 32 robots, 128 robots, and 96 robots
-on three tiers with elevators. The backlog is constant, all other decisions are random, and one hour
-is simulated. With a better method, the same robots complete more orders. On the three tiers, the
-rules of that study keep pods, and therefore robots, on their tier; so this layout is also simulated
-with pods stored on any tier.
+There are three layouts, each of the size of an instance in that paper: 32 robots on one tier, 128
+robots on one tier, and 96 robots on three tiers with elevators. The backlog is constant, all other
+decisions are random, and one hour is simulated. With a better method, the same robots complete more
+orders. As in the paper, pods, and therefore robots, stay on their tier if possible. So that robots
+have to use the elevators, the layout with three tiers is simulated once more with pods stored on
+any tier.
 
-With `--reference DIR` (the public instances of RAWSim-O) the original layouts of the study are used
-instead, and RAWSim-O's own figures are shown for comparison.
+With `--reference DIR` (the folder of RAWSim-O's public instances), the original layouts of the
+paper are used instead, and the results of RAWSim-O are shown for comparison.
 """
 
 from __future__ import annotations
@@ -44,18 +45,18 @@ class Instance:
     twin
         A shipped layout of the same size.
     reference
-        The original layout, in the folder of public instances.
+        The original layout: its path in the folder of RAWSim-O's public instances.
     theirs
-        RAWSim-O's orders per hour, km per hour and simulated time in s over which they were
-        measured (seed 0), for the methods that were run there.
+        Results of RAWSim-O with seed 0, for the methods that were run with RAWSim-O: orders per
+        hour, km per hour, and the simulated time in s over which these were measured.
     seeds
         Number of seeds for methods that are not slow.
     slow
         Methods that need minutes of computation for a simulated hour, and their numbers of seeds; 0
         leaves a method out.
     riding
-        Whether pods may be stored on other tiers, so that robots ride elevators. The rules of
-        RAWSim-O and of rmfs keep pods on their tier if possible.
+        Whether pods are stored on any tier, so that robots ride elevators. Otherwise they stay on
+        their tier if possible, as is the default in RAWSim-O and rmfs.
     """
 
     twin: str
@@ -112,8 +113,8 @@ INSTANCES = [
     ),
     Instance("study-tiers", "pp/3-12-12-96-1650.xinst", {}, seeds=3, slow={"bcp": 0}, riding=True),
 ]
-"""The layouts of the study, with RAWSim-O's figures. The shorter a simulation, the more its figures
-depend on the initial phase, in which all robots are free."""
+"""The layouts of the study, with results of RAWSim-O. The shorter a simulation was, the more its
+results depend on the initial phase, in which all robots are free."""
 
 CAPTION = (
     "Path planning methods over an hour with a constant backlog: means over seeds with 95% "
@@ -155,7 +156,10 @@ def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tupl
 
 
 def rows(study: Study, instance: Instance, name: str) -> Rows:
-    """Return the rows of one layout: methods sorted by orders per hour, with RAWSim-O's figures."""
+    """Return the rows of one layout, one per method, sorted by orders per hour.
+
+    For original layouts, the rows also contain the results of RAWSim-O.
+    """
     frame = study.frame
     differences = against(frame, "orders_per_h", OURS, by=METHOD)
     made: Rows = {}

@@ -1,7 +1,9 @@
 """The balance of work among pickers, and its cost.
 
-At the small site with arrivals there are two pickers who differ in speed and get tired. Rules that
-balance work or consider pickers are compared with the rules pod match and workload, and optimisers
+At the small site (layout `small`), orders arrive over time, and two pickers differ in speed and get
+tired. The POA rule workload, which balances open orders over the stations, and the SA rule staffed,
+which lets tired pickers rest, are compared with the POA rule pod match, the default. The POA rule
+picker load, which considers the speed and fatigue of pickers, is compared with workload. Optimisers
 with balance in their objective are compared with the same optimisers without it. The study
 publishes means, and differences paired by seed.
 """
@@ -34,9 +36,9 @@ COMPARED = (
 
 
 def differences(frame: pd.DataFrame) -> Table:
-    """Return the differences of the pairs `COMPARED`, paired by seed, in the unit of each column.
+    """Return the differences between the arms of each pair in `COMPARED`, paired by seed.
 
-    A difference is the arm minus its baseline.
+    A difference is the arm minus its baseline, in the unit of the column.
 
     Parameters
     ----------

@@ -1,11 +1,12 @@
-"""The benefit of planning ahead: the search compared with its own start rule.
+"""The benefit of planning ahead: TA planning compared with its own start rule.
 
-TA planning is run at the small site with three to five robots (`--large`: the large site with 20
-and 30), with whole orders, a backlog or arrivals, after a warm-up. The start rule is the same
+TA planning, an optimiser that plans several visits ahead, is run at the small site (layout `small`)
+with three to five robots or, with `--large`, at the large site (layout `large`) with 20 and 30.
+Orders are not split; they come from a backlog or arrive over time. The start rule is the same
 controller with `method = "greedy"`: its other parameters are the same, and it continues the
-previous plan, but does not search. With `--anticipation`, planning is compared with planning that
-also considers future orders. Bundles and used space are shown as well, because storing fewer
-bundles frees robots for a while.
+previous plan, but does not search. With `--anticipation`, TA planning that also considers future
+orders is compared with TA planning that does not. Bundles and used space are shown as well, because
+storing fewer bundles frees robots for a while.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """The cost of planning time: units per hour over the time that a path plan takes.
 
-The design `price-of-planning` varies how long the plan of a trip takes, on two layouts with five
-fleets: with one planner for all robots, and with a planner for each (labels that end in ", each").
-It also charges the work of our own search, plans only when a robot could depart (lazy), and begins
-plans only every five seconds. The study publishes the change of units per hour compared with plans
-that take no time, paired by seed, and for each fleet the time from which planning costs throughput.
+The design `price-of-planning` varies the time that it takes to plan the path of a robot's trip, for
+five fleets: three on one layout and two on another, with one planner for all robots, and with a
+planner for each (labels that end in ", each"). It also charges the work of our own search, plans
+only when a robot could depart (lazy), and begins plans only every five seconds. The study publishes
+the change of units per hour compared with plans that take no time, paired by seed, and, for each
+fleet, the shortest time per plan that costs throughput.
 """
 
 from __future__ import annotations
@@ -32,13 +33,16 @@ Rows = dict[str, dict[tuple[str, str], float]]
 
 
 def wide(frame: pd.DataFrame, fleet: str, column: str = "units_per_h") -> pd.DataFrame:
-    """Return a measure of one fleet, with one row per seed and one column per kind of planning."""
+    """Return a measure of one fleet: a row for each seed, a column for each level of `planning`."""
     own = frame[frame[FLEET] == fleet]
     return own.pivot_table(index="replication", columns=PLANNING, values=column, sort=False)
 
 
 def changes(frame: pd.DataFrame, fleet: str) -> dict[str, Interval]:
-    """Return the change of a fleet's units per hour by kind of planning, in percent."""
+    """Return the change of a fleet's units per hour with each level of `planning`, in percent.
+
+    The change is relative to plans that take no time.
+    """
     units = wide(frame, fleet)
     return {
         planning: interval(100 * (units[planning] / units[INSTANT] - 1))
@@ -48,7 +52,7 @@ def changes(frame: pd.DataFrame, fleet: str) -> dict[str, Interval]:
 
 
 def losses(frame: pd.DataFrame) -> Table:
-    """Return the change of units per hour by kind of planning (rows) and fleet (columns).
+    """Return a table of `changes`, with a row per level of `planning` and a column per fleet.
 
     Parameters
     ----------
@@ -70,7 +74,7 @@ def losses(frame: pd.DataFrame) -> Table:
 
 
 def seconds(planning: str) -> float:
-    """Return the time of a plan in s, if it is constant in this kind of planning, otherwise nan."""
+    """Return the constant time per plan that the label of a level states, in s; nan if none."""
     number, _, rest = planning.removesuffix(", each").partition(" ")
     return float(number) if rest == "s" else nan
 
@@ -78,9 +82,10 @@ def seconds(planning: str) -> float:
 def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float]:
     """Return the shortest time per plan that costs throughput, and the next shorter time, in s.
 
-    A time per plan costs throughput if the confidence interval of the change lies below zero for
-    this time and for all longer ones in the design. If no time costs throughput, the first value is
-    nan; if all do, the second is.
+    Only times of the design are considered. One of them costs throughput if the confidence interval
+    of the change of units per hour lies below zero for this time and for all longer ones. If no
+    time costs throughput, the first value is nan, and the second is the longest time; if all times
+    do, the second value is nan.
 
     Parameters
     ----------
@@ -102,7 +107,7 @@ def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float
 
 
 def thresholds(frame: pd.DataFrame) -> Table:
-    """Return a table of the time per plan from which planning costs throughput, by fleet."""
+    """Return a table of the shortest time per plan that costs throughput (`begins`), by fleet."""
     rows: Rows = {}
     for fleet in frame[FLEET].unique():
         units = interval(wide(frame, fleet)[INSTANT])
@@ -137,7 +142,7 @@ def thresholds(frame: pd.DataFrame) -> Table:
 
 
 def picture(study: Study) -> None:
-    """Plot units per hour, as a share of those of instant planning, over seconds per plan."""
+    """Plot units per hour, in percent of those with instant planning, over seconds per plan."""
     path = study.place("price-of-planning.png")
     with saving(path, 6.0, 4.0) as figure:
         ax = figure.subplots()

@@ -1,15 +1,16 @@
 """The cost of splitting orders: the put wall it needs, and the packing work it may cause.
 
-Split orders are compared with whole ones (with the best controllers available for each), for put
-walls of different sizes, one minute and ten minutes away from the pick stations. The controllers
-split no more orders than the wall can hold or, in arms `always`, any number. The study publishes
-means; differences paired by seed; the gain of splitting within the capacity of the wall over the
-better of two alternatives (whole orders, and splitting regardless of the wall); and the gain of
-optimisers over their start rules. It also publishes three break-even points of splitting: the
-number of slots of the wall from which on splitting picks more units per hour; the packer's time per
-additional tote at which the work of pickers and packers per unit is the same as with whole orders;
-and the transport time to the wall at which split orders are on average packed as early as whole
-ones. `--default` and `--large` select these sites.
+Split orders are compared with whole ones, for put walls of different sizes, one minute and ten
+minutes away from the pick stations. The controllers split no more orders than the wall can hold or,
+in the arms whose names contain `always`, any number. The study publishes means; differences from
+whole orders, paired by seed; the gain of splitting within the capacity of the wall over the better
+of two alternatives (whole orders, and splitting regardless of the wall); and the gain of optimisers
+over their start rules. It also publishes three points at which splitting breaks even with whole
+orders: the number of slots of the wall at which units per hour are equal; the packer's time per
+additional tote at which the work of pickers and packers per unit is equal; and the transport time
+to the wall at which the mean time from an order's arrival to its packing is equal. The study uses
+the small site (layout `small`) or, with `--default` or `--large`, the default or the large site
+(layouts `default` and `large`); at the large site, all walls are one minute away.
 """
 
 from __future__ import annotations
@@ -56,12 +57,12 @@ RESAMPLES = 2000
 
 
 def wall_of(label: str) -> tuple[float, float]:
-    """Read a wall's slots (inf: unlimited) and the time to it, in s, from the label of a level.
+    """Return a wall's number of slots (inf: unlimited) and the time to it in s, read from a label.
 
     Raises
     ------
     ValueError
-        If the label describes no wall.
+        If the label is not like `16 slots, 60 s` or `any slots, 60 s`.
     """
     found = re.fullmatch(r"(\d+|any) slots, (\d+) s", label)
     if found is None:
@@ -70,9 +71,10 @@ def wall_of(label: str) -> tuple[float, float]:
 
 
 def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
-    """Return the wall (`wall_of`) of each level of `orders` that splits within its capacity.
+    """Return the walls (`wall_of`) by level of `orders`.
 
-    Levels of start rules are left out.
+    Three kinds of levels are left out: whole orders, splitting regardless of the wall's capacity,
+    and start rules.
     """
     labels = [str(label) for label in runs[ORDERS].unique()]
     return {
@@ -83,20 +85,21 @@ def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
 
 
 def break_even(slots: Sequence[float], gain: Floats) -> float:
-    """Return the smallest number of slots with a gain, by linear interpolation.
+    """Return the number of slots above which there is a gain, by linear interpolation.
 
     Parameters
     ----------
     slots
-        Slots of the walls, ascending. The last may be infinite; if it is the only one with a gain,
-        the number before it is returned.
+        Number of slots of each wall, ascending. The last may be infinite; if only that wall has a
+        gain, the number before it is returned.
     gain
         Gain with each wall. A running maximum is used, so that noise cannot make the gain decrease
         as the number of slots increases.
 
     Returns
     -------
-    The number of slots: the first number given if all walls have a gain, and infinity if none has.
+    The number of slots. It is that of the smallest wall if even this wall has a gain, and infinity
+    if no wall has.
     """
     reached: Floats = np.maximum.accumulate(gain)
     if reached[0] > 0:
@@ -114,15 +117,15 @@ def break_even(slots: Sequence[float], gain: Floats) -> float:
 def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, float]:
     """Return the break-even number of slots, and its 95 % interval.
 
-    With more slots than that, splitting picks more units per hour than whole orders.
+    With more slots, more units per hour are picked by splitting than with whole orders.
 
     Parameters
     ----------
     runs
         Runs with one kind of demand.
     way_s
-        Time to the walls, in s. The wall with unlimited slots is always included, whatever its
-        distance, because it is never full.
+        Time to the walls that are considered, in s. The wall with unlimited slots is always
+        included: as it is never full, the time to it does not matter for units per hour.
 
     Returns
     -------
@@ -144,10 +147,10 @@ def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, fl
 def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[float]:
     """Return the packer's time per additional tote at which splitting saves no work, in s.
 
-    The result has one value per seed, nan if nothing was split. One picker works at each pick
-    station. Splitting saves the share `1 - whole / split` of the pickers' time, where `whole` and
-    `split` are units per hour. The result is the saved time divided by the number of additional
-    totes.
+    An additional tote is one beyond the first of an order. One picker works at each pick station.
+    With units per hour `split` and `whole`, splitting saves the share `1 - whole / split` of the
+    pickers' time. The result is the time saved divided by the number of additional totes, with one
+    value per seed, which is nan if nothing was split.
 
     Parameters
     ----------
@@ -227,7 +230,8 @@ _PARTS = ("mean", HALF, "2.5 %", "97.5 %")
 def against_better(frame: pd.DataFrame) -> Table:
     """Return the gain of splitting within the wall's capacity over the alternatives, in percent.
 
-    The alternatives are whole orders, splitting regardless of the wall, and the better of the two.
+    The gain is in units per hour. The alternatives are whole orders, splitting regardless of the
+    wall, and the better of these two.
 
     Parameters
     ----------

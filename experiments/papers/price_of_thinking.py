@@ -1,11 +1,13 @@
 """The cost of computing time: units per hour over the time limit of the optimiser.
 
-The study uses the small site with six robots and split orders. With `fixed` pacing, an answer takes
-effect after the whole time limit, as if the solver had used all of it. With `work`, it takes effect
-after the time that corresponds to the solver's work, which is less if the optimum is proven early.
-Both are reproducible. The study takes about 0.1 CPU hours. `--wall` uses wall time at four limits,
-which is not reproducible and needs an otherwise idle machine (0.02 CPU hours). `--planning` uses TA
-planning with four robots, whose questions are large enough for a search to matter.
+The study uses the small site (layout `small`) with six robots and split orders. With the pacing
+`fixed`, an answer of the optimiser takes effect after the whole time limit, as if the solver had
+used all of it. With `work`, it takes effect after the time that corresponds to the solver's work,
+which is less if the optimum is proven early. Results with either pacing are reproducible. The study
+takes about 0.1 CPU hours. `--wall` uses wall time, with four limits (0.02 CPU hours); its results
+are not reproducible, and the machine must be otherwise idle. `--planning` uses TA planning, which
+plans several visits ahead, with four robots: its problems are large enough for a search to matter.
+Instead of the time limit, the time per answer or the number of search steps is then varied.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ COLUMNS = ("units_per_h", "units_per_visit", "distance_per_unit_m", "paced_mean_
 
 
 def paced(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs with the column `paced_mean_s`: mean simulated time until an answer, in s."""
+    """Return the runs with the column `paced_mean_s`: mean simulated time of an answer, in s."""
     return frame.assign(paced_mean_s=frame["paced_s"] / frame["optimiser_calls"])
 
 

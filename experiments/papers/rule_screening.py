@@ -27,7 +27,7 @@ BEST = 10
 
 
 def strongest(found: pd.DataFrame) -> str:
-    """Return the factor that explains most of the variation, or state that none is significant."""
+    """Return the factor that explains most of the variation, or "none" if it is not significant."""
     others = [name for name in (SEEDS, POOLED, RESIDUAL) if name in found.index]
     factors = found.drop(index=others)
     first = factors.index[0]

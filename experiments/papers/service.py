@@ -1,12 +1,13 @@
 """Orders on time: rules compared with an optimiser that considers due times.
 
-The study uses the small site with tight, medium and slack due times. The optimiser is TA planning
-with tardiness in its objective (`late_s`), with and without its computing time charged (pacing
-`work`). The study publishes means, and differences of the optimiser's on-time shares in percentage
-points, paired by seed: to the best of the rules, which is selected from the same runs and thus
-favoured; to the start rule; and to planning that ignores due times. `--priorities` uses three
-classes of orders with different weights, and shows differences for the first class (urgent) and for
-all other orders (ordinary).
+The study uses the small site (layout `small`) with tight, medium and slack due times. The optimiser
+is TA planning with tardiness in its objective (`late_s`). It is simulated in two ways: its answers
+take no time, or they take simulated time in proportion to their computation (pacing `work`). The
+study publishes means, and gains of the optimiser in on-time share, in percentage points and paired
+by seed, over three baselines: the best of the rules, which is selected from the same runs and thus
+favoured; the optimiser's start rule; and TA planning that ignores due times. `--priorities` uses
+three classes of orders with different weights, and shows gains for the first class (urgent) and for
+the two other classes together (ordinary).
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ COLUMNS = (
 
 
 def best_rule(runs: pd.DataFrame) -> str:
-    """Return the rule with the highest mean on-time share among runs of one kind of due times."""
+    """Return the rule with the highest mean on-time share in the given runs."""
     rules = runs[~runs[DECIDED].isin([OPTIMISER, *OTHERS])]
     return str(rules.groupby(DECIDED)[SHARE].mean().idxmax())
 
@@ -42,7 +43,8 @@ def best_rule(runs: pd.DataFrame) -> str:
 def differences(frame: pd.DataFrame) -> Table:
     """Return the optimiser's gains in on-time share over baselines, in percentage points.
 
-    There is one row per kind of due times, optimiser arm and baseline.
+    Each row states the due times (tight, medium or slack), the arm of the optimiser (`optimiser`,
+    or `optimiser, work` with pacing `work`), and the baseline.
 
     Parameters
     ----------
@@ -80,8 +82,8 @@ BY_CLASS = ("on_time_urgent_share", "on_time_ordinary_share")
 def differences_by_class(frame: pd.DataFrame) -> Table:
     """Return the optimiser's gains in on-time share, for urgent and for ordinary orders.
 
-    Gains are in percentage points: over the best rule, the start rule, and the optimiser with equal
-    weights of all classes.
+    Gains are in percentage points, over three baselines: the best rule for urgent orders, the start
+    rule, and the optimiser with equal weights of all classes.
 
     Parameters
     ----------

@@ -1,11 +1,12 @@
 """PSA and TA models compared with the rules nearest (PSA) and balanced (TA).
 
 Most arms replace only one of the two rules by a model. The literature finds that storage locations
-and tasks matter little for throughput (Merschformann, Lamballais, de Koster, Suhl 2019); they
-affect the driving. Therefore the fleet is small, so that driving is the bottleneck, and metres per
-unit are shown with units, lines and orders per hour. Bundles per hour are shown as well, because
-storing fewer bundles frees robots for a while. Each kind of demand has its own tables: means,
-differences to the rules, and the gain of each model over its own start rule, paired by seed.
+and tasks matter little for throughput (Merschformann, Lamballais, de Koster, Suhl 2019), but they
+affect how far robots drive. Therefore the fleet is so small that driving is the bottleneck, and
+metres per unit are shown with units, lines and orders per hour. Bundles per hour are shown as well,
+because storing fewer bundles frees robots for a while. There are separate tables for a backlog and
+for orders that arrive over time: means, differences from the two rules, and the gain of four of the
+models over their own start rules, both paired by seed.
 """
 
 from __future__ import annotations

@@ -49,7 +49,7 @@ class Study:
         Folder for tables and pictures.
     suffix
         Suffix of the names of tables and pictures: "-reference" if RAWSim-O's own layout was
-        used instead of our generated layout of the same size, "-smoke" if runs are short.
+        used instead of our generated layout of the same size, and "-smoke" if runs are short.
     """
 
     plan: Plan
@@ -64,7 +64,7 @@ class Study:
         return self.suffix.endswith(_SMOKE)
 
     def table(self, name: str) -> pd.DataFrame:
-        """Return a table that was kept from every run."""
+        """Return a table that was kept from every run, with the rows of all runs."""
         return load(self.folder, table=name)
 
     def publish(self, table: Table, name: str, columns: Sequence[str], **more: Any) -> None:
@@ -107,8 +107,8 @@ def parser(
     design
         The shipped design.
     reference
-        Layout of RAWSim-O on which the study can be run instead of its shipped twin: a path in the
-        folder of public instances.
+        Layout of RAWSim-O on which the study can be run instead of the shipped layout of the same
+        size: a path in the folder of RAWSim-O's public instances.
     """
     made = argparse.ArgumentParser(description=(description or "").splitlines()[0])
     made.add_argument("--design", default=design, help=f"another design file (default: {design})")
@@ -171,7 +171,7 @@ def done(
     Raises
     ------
     InputError
-        If the design is invalid, or the folder of public instances lacks the layout.
+        If the design is invalid, or the folder given by `--reference` lacks the layout.
     SystemExit
         If runs failed, as an incomplete study is not published.
     """
@@ -198,7 +198,7 @@ def done(
 
 
 def station_units_per_h(study: Study) -> float:
-    """Return the capacity of a pick station in units per hour, taken from the study's first arm."""
+    """Return the units per hour that the fastest pick station of the study's first arm can pick."""
     stations = study.layout(study.plan.arms[0]).pick_stations
     return 3600.0 / min(station.unit_transfer_s for station in stations)
 

@@ -1,8 +1,8 @@
-"""Runs on a Dask cluster: an existing one, or one started through a batch system.
+"""Makes runs on a Dask cluster: an existing one, or one that is started from a cluster profile.
 
-Workers need the same version of rmfs, and your input files under the same paths (a shared file
-system); every worker compares the hashes of the inputs. Start workers with one thread each
-(`dask worker ADDRESS --nworkers N --nthreads 1`), because each run is a process.
+Workers need the same version of rmfs as this machine, and your input files under the same paths (on
+a shared file system); every worker checks the hashes of the inputs. Start workers with one thread
+each (`dask worker ADDRESS --nworkers N --nthreads 1`), so that each makes one run at a time.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ CLUSTERS = {
 
 
 class Profile(Model):
-    """A cluster profile (`rmfs-cluster/1`) with the settings of dask-jobqueue.
+    """A cluster profile (format `rmfs-cluster/1`), with settings for dask-jobqueue.
 
     `cluster = "local"` starts workers on this machine, for testing.
     """
@@ -62,7 +62,7 @@ class DaskWorkers:
     address
         Address of a scheduler (`tcp://HOST:PORT`), or a profile (.toml file).
     work
-        Function that executes a job. Default: simulate it.
+        Function that executes a job. Default: `running.execute.execute`.
 
     Raises
     ------
@@ -90,7 +90,7 @@ class DaskWorkers:
 
     @property
     def slots(self) -> int:
-        """Maximum number of unfinished jobs: two per worker, so that no worker waits for a job."""
+        """Maximum number of unfinished jobs: two per worker thread, so that none is idle."""
         with self._scheduler_there():
             workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
         threads = [int(worker["nthreads"]) for worker in workers]
@@ -104,7 +104,7 @@ class DaskWorkers:
         future.add_done_callback(self._done.put)
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended; if none has, wait up to `timeout_s` for one.
+        """Return ended jobs with their outcomes; if there are none yet, wait up to `timeout_s`.
 
         Raises
         ------
@@ -120,7 +120,7 @@ class DaskWorkers:
             return ended
 
     def close(self) -> None:
-        """Cancel running jobs and leave the cluster; stop the cluster if it was started here."""
+        """Cancel all unfinished jobs and disconnect; stop the cluster if this object started it."""
         # a scheduler that is gone has nothing to cancel
         with suppress(OSError, RuntimeError, CancelledError):
             self.client.cancel(list(self._jobs), force=True)
@@ -165,12 +165,12 @@ def read_profile(path: Path) -> Profile:
 
 
 def job_script(path: Path) -> str:
-    """Return the script of a batch job with workers, as it would be submitted to the batch system.
+    """Return the script that would be submitted to the batch system to start workers.
 
     Raises
     ------
     InputError
-        If the profile is invalid or has no batch system, or dask-jobqueue is not installed.
+        If the profile is invalid or names no batch system, or dask-jobqueue is not installed.
     """
     profile = read_profile(path)
     if profile.cluster == "local":
@@ -183,12 +183,12 @@ def job_script(path: Path) -> str:
 
 
 def started(profile: Profile, source: str) -> Any:
-    """Start the cluster of a profile: on this machine, or by batch jobs for all of its workers.
+    """Start the cluster of a profile with all its workers, on this machine or as batch jobs.
 
     Parameters
     ----------
     source
-        Name of the profile, for errors.
+        Name of the profile, for error messages.
 
     Raises
     ------

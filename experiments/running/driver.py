@@ -1,4 +1,4 @@
-"""The driver, which distributes the needed runs and stores their results."""
+"""The driver, which distributes runs to workers and stores the results."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ class Watcher(Protocol):
         """Receive the total number of runs, and how many of them are finished."""
 
     def ended(self, job: Job, outcome: Outcome) -> None:
-        """Note that a run has ended; if `outcome.error` is empty, it was successful."""
+        """Receive the outcome of a run that has ended; it succeeded if `outcome.error` is empty."""
 
     def remark(self, text: str) -> None:
         """Receive a remark that is worth a line of output."""
 
     def tick(self) -> None:
-        """Update the display; called about every `PATIENCE_S` seconds, or more often."""
+        """Update the display; called when runs end, and otherwise every `PATIENCE_S` seconds."""
 
 
 class Silent:
@@ -72,7 +72,8 @@ class Tally:
     Attributes
     ----------
     wanted, finished
-        Number of runs of the experiment, and number of those already stored.
+        Number of runs that the experiment needs (as far as known, if the design has stages), and
+        number of those that are finished and stored.
     ran
         Number of runs made by the driver, including failed ones.
     failed
@@ -86,7 +87,7 @@ class Tally:
 
 
 def drive(plan: Plan, store: Store, engine: Engine, watcher: Watcher | None = None) -> Tally:
-    """Make the runs of a plan that are not finished yet.
+    """Make those runs of a plan that are not finished yet.
 
     Runs that failed or were interrupted earlier are repeated.
 

@@ -1,6 +1,6 @@
-"""The work of one job, in a process of its own: load, simulate, measure.
+"""Executes one job in a worker process: loads the inputs, simulates and measures.
 
-The modules imported here are imported once, before the processes are forked.
+For runs on this machine, the modules imported here are loaded once, before workers are forked.
 """
 
 from __future__ import annotations

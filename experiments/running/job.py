@@ -25,7 +25,7 @@ class Job:
     measures
         References to the user's own measures.
     decisions
-        Folder for recorded questions to optimisers; empty if they are not recorded.
+        Folder in which the questions to optimisers are recorded; empty if they are not recorded.
     """
 
     design: str
@@ -63,7 +63,7 @@ class Outcome:
     footprint
         The footprint, one row; None if the run failed.
     tables
-        The tables to keep.
+        The tables to keep besides the footprint, by name.
     error
         Error in one line; empty if there was none.
     traceback

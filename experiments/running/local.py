@@ -1,7 +1,7 @@
-"""Runs on this machine, each in a separate process, several in parallel.
+"""Makes runs on this machine, several in parallel, each in a separate process.
 
-Processes are forked from a server that has imported everything and never simulates. A run therefore
-starts within milliseconds, in fresh memory, independently of all others.
+Processes are forked from a server process that has imported all modules but never simulates. A run
+therefore starts within milliseconds, in fresh memory, independently of all other runs.
 """
 
 from __future__ import annotations
@@ -42,17 +42,17 @@ ONE_THREAD = dict.fromkeys(
 
 
 class Engine(Protocol):
-    """Executes jobs."""
+    """Interface of objects that execute jobs."""
 
     @property
     def slots(self) -> int:
-        """Return how many submitted jobs should be unfinished at a time, at most."""
+        """Maximum number of submitted jobs that should be unfinished at a time."""
 
     def submit(self, job: Job) -> None:
         """Start a job."""
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended; if none has, wait up to `timeout_s` for one."""
+        """Return ended jobs with their outcomes; if there are none yet, wait up to `timeout_s`."""
 
     def close(self) -> None:
         """Stop all running jobs."""
@@ -73,7 +73,7 @@ class LocalProcesses:
     processes
         Maximum number of parallel processes.
     work
-        Function that executes a job. Default: simulate it.
+        Function that executes a job. Default: `running.execute.execute`.
     """
 
     def __init__(self, processes: int, work: Callable[[Job], Outcome] | None = None) -> None:
@@ -109,7 +109,7 @@ class LocalProcesses:
             self._running[receiver.fileno()] = _Running(job, process, receiver)
 
     def wait(self, timeout_s: float) -> list[tuple[Job, Outcome]]:
-        """Return the jobs that have ended; if none has, wait up to `timeout_s` for one."""
+        """Return ended jobs with their outcomes; if there are none yet, wait up to `timeout_s`."""
         receivers = [one.receiver for one in self._running.values()]
         ended = []
         for receiver in connection.wait(receivers, timeout_s):

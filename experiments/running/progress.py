@@ -19,12 +19,12 @@ LINE_EVERY_S = 10.0
 
 
 def time_left_s(begun_s: float, now_s: float, ran: int, left: int) -> float:
-    """Return the remaining time in s, estimated from the runs made so far; inf if none was."""
+    """Return the time for `left` runs in s, estimated from the first `ran`; inf if `ran` is 0."""
     return (now_s - begun_s) / ran * left if ran else float("inf")
 
 
 def spoken(seconds: float) -> str:
-    """Return a duration in words."""
+    """Return a duration as text, in s, min or h."""
     if seconds < 100:
         return f"{max(seconds, 1):.0f} s"
     if seconds < 6000:
@@ -47,7 +47,7 @@ class Lines:
         self.total, self.finished = total, finished
 
     def ended(self, job: Job, outcome: Outcome) -> None:
-        """Count a run; report failures immediately."""
+        """Count a run; report failures at once, progress at most every `LINE_EVERY_S` seconds."""
         self.ran += 1
         if outcome.error:
             self.failed += 1

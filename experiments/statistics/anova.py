@@ -1,8 +1,9 @@
 """Analysis of variance: how much of the variation of a measure each factor explains.
 
-Every effect is found by comparing two linear models fitted by least squares; the rank of a model
-counts as its number of parameters. If a design leaves out combinations of levels, effects therefore
-have fewer degrees of freedom, and effects that the design cannot separate are detected.
+Every effect is found by comparing two linear models, with and without it, fitted by least squares.
+The rank of a model counts as its number of parameters. An interaction therefore has fewer degrees
+of freedom if a design leaves out combinations of levels. Effects that the design cannot separate
+are detected.
 """
 
 from __future__ import annotations
@@ -54,11 +55,11 @@ def anova(
     other's effects.
 
     Interactions of two factors have one row each if the runs can separate all effects and leave at
-    least one degree of freedom for the residual. Otherwise (as in a fraction of a grid), all
-    differences between combinations of levels beyond the main effects form one row, `interactions`,
-    and the residual is the variation between runs of the same combination. If no combination has
-    been run twice, interactions are part of the residual. `attrs["interactions"]` of the table
-    states which case applies.
+    least one degree of freedom for the residual. Otherwise (as in a fractional design), a single
+    row, `interactions`, holds all differences between combinations of levels that the main effects
+    do not explain, and the residual is the variation between runs of the same combination. If no
+    combination has been run twice, this is impossible, and interactions are part of the residual.
+    `attrs["interactions"]` of the table states which case applies.
 
     Parameters
     ----------
@@ -67,25 +68,26 @@ def anova(
     interactions
         Whether to separate interactions from the residual. Default True.
     block
-        Column of the seeds, whose share of the variation is removed from the residual (with common
-        random numbers). Default `replication`.
+        Column of the seeds. With common random numbers, the variation between seeds is not part of
+        the residual but has its own row. None: it is part of the residual. Default `replication`.
     confidence
         Confidence of the intervals of `partial_eta_sq`. Default 0.95.
     names
-        Names of the factors in the table. Default: as in the frame.
+        Names of factors in the table, by column. Default: the names of the columns.
 
     Returns
     -------
-    One row per effect, strongest first, then seeds and residual: `sum_sq df f p`, effect sizes
-    `eta_sq` (share of the sum of all rows), `partial_eta_sq` with its interval
-    (`partial_eta_sq_low`, `partial_eta_sq_high`; Steiger 2004) and `omega_sq` (`eta_sq`
-    corrected for degrees of freedom; does not grow with the number of levels; may be negative).
+    One row per effect, largest sum of squares first, then the rows of seeds and residual. Columns:
+    `sum_sq`, `df`, `f`, `p` and the effect sizes `eta_sq` (share of the total of `sum_sq`),
+    `partial_eta_sq` with its confidence interval (`partial_eta_sq_low`, `partial_eta_sq_high`;
+    Steiger 2004) and `omega_sq` (`eta_sq` corrected for what chance alone explains on average;
+    may be negative).
 
     Raises
     ------
     InputError
-        If no factor varies, there are too few runs for the model, or the main effects of two
-        factors cannot be separated.
+        If a column is missing, no factor varies, there are too few runs for the model, or the main
+        effect of a factor cannot be separated from those of the others.
     """
     require(frame, column, *factors)
     known = frame[frame[column].notna()]

@@ -32,7 +32,7 @@ class Interval:
     count
         Number of runs.
     low, high
-        Ends of the interval; nan for a single run.
+        Ends of the interval; nan for fewer than two runs.
     """
 
     count: int
@@ -60,9 +60,9 @@ def interval(
     confidence
         Probability that intervals made this way cover the true mean. Default 0.95.
     method
-        `t`: Student's t, exact if runs are normally distributed. `bootstrap`: bias-corrected and
-        accelerated (Efron 1987), for other distributions; its intervals are too narrow for few runs
-        (see `tests.tools.coverage`). Default `t`.
+        `t`: Student's t, exact if the values are normally distributed. `bootstrap`: bias-corrected
+        and accelerated (Efron 1987), for other distributions; with few runs, its intervals are too
+        narrow (see `tests.tools.coverage`). Default `t`.
     """
     given = np.asarray(values, dtype=float)
     given = given[~np.isnan(given)]
@@ -108,7 +108,7 @@ def per_arm(
     Returns
     -------
     One row per arm, in the order of their first appearance: `count`, `mean`, `low`, `high`,
-    `half_width`, `relative_half_width` and `sd`.
+    `half_width`, `relative_half_width` (half width / |mean|) and `sd` (standard deviation).
     """
     require(frame, by, column)
     rows = {}

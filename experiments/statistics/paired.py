@@ -1,7 +1,8 @@
 """Differences between arms, seed by seed.
 
-With common random numbers two arms face the same demand for the same seed, so the difference of
-each pair varies less than the arms themselves. Differences are always "arm minus baseline".
+With common random numbers, runs of two arms with the same seed face the same demand, so the
+difference within such a pair usually varies less than the results of the arms themselves.
+Differences are always "arm minus baseline".
 """
 
 from __future__ import annotations
@@ -29,13 +30,13 @@ def paired(
     Parameters
     ----------
     arm, baseline
-        One number per seed, indexed by seed; only common seeds are used.
+        One number per seed, indexed by seed; only seeds that both arms have are used.
 
     Returns
     -------
-    `pairs` (number of seeds), `difference` (mean of arm minus baseline), `low` and `high` (ends of
-    its confidence interval), `relative` (difference / baseline's mean), and `p` of the paired t
-    test (two-sided; nan for fewer than two pairs).
+    `pairs` (number of seeds used), `difference` (mean of arm minus baseline), `low` and `high`
+    (ends of the confidence interval of `difference`), `relative` (`difference` / mean of the
+    baseline), and `p` of the paired t test (two-sided; nan for fewer than two pairs).
     """
     both = pd.concat([arm, baseline], axis=1, keys=["arm", "baseline"], join="inner").dropna()
     values = both.to_numpy(dtype=float)
@@ -57,7 +58,7 @@ def unpaired(arm: pd.Series, baseline: pd.Series, *, confidence: float = 0.95) -
 
     Returns
     -------
-    As for `paired`; `pairs` is 0.
+    As for `paired`, but `pairs` is 0, and `p` is that of Welch's test.
     """
     a, b = arm.dropna().to_numpy(dtype=float), baseline.dropna().to_numpy(dtype=float)
     difference = float(a.mean() - b.mean()) if len(a) and len(b) else np.nan
@@ -94,13 +95,13 @@ def against(
     baseline
         The arm to which the others are compared.
     pair
-        Column that identifies pairs. Default `replication`, the seed as numbered in the design.
+        Column that identifies pairs. Default `replication`, the seed as given in the design.
 
     Returns
     -------
-    One row per other arm: what `paired` returns, `p_holm` (`p` corrected for multiple comparisons
-    by Holm's method, over all rows; Holm 1979) and `direction`: "higher", "lower" or "unclear" at
-    the level 1 - `confidence` after correction.
+    One row per other arm, with what `paired` returns, `p_holm` (`p` corrected for the comparisons
+    in all rows by Holm's method; Holm 1979) and `direction` ("higher" or "lower" than the baseline;
+    "unclear" unless `p_holm` is below 1 - `confidence`).
 
     Raises
     ------

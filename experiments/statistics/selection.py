@@ -1,10 +1,11 @@
-"""Selection of the best arm with a stated error.
+"""Selection of the best arm with a stated probability of error.
 
 Procedure KN: S.-H. Kim and B. L. Nelson (2001), A fully sequential procedure for indifference-zone
 selection in simulation, ACM Transactions on Modeling and Computer Simulation 11(3), 251-273. If
-runs are normally distributed and the best arm is better than all others by at least the
-indifference (the smallest difference worth detecting), it is selected with probability at least
-1 - error. Arms may be correlated through common random numbers, which reduces the number of runs.
+the results of runs are normally distributed and the best arm is better than all others by at least
+the indifference (the smallest difference worth detecting), the best arm is selected with a
+probability of at least 1 - error. Results of different arms may be correlated: common random
+numbers usually reduce the number of runs needed.
 """
 
 from __future__ import annotations
@@ -36,13 +37,13 @@ class Selection:
     observations
         Number of observations used of each arm in `left`.
     over
-        Whether the procedure has ended; otherwise it needs one more observation of each remaining
-        arm.
+        Whether the procedure has ended; otherwise it needs more observations of arms in `left`.
     best
-        The selected arm, once the procedure has ended; if it was stopped early, the remaining arm
-        with the best mean.
+        The selected arm; if the procedure was stopped early, the arm in `left` with the best mean.
+        None before the end.
     proven
-        Whether the stated error holds; false if the procedure was stopped early.
+        Whether `best` is selected with the stated probability of error; false before the end, and
+        if the procedure was stopped early, at the maximum number of observations.
     """
 
     left: tuple[str, ...]
@@ -78,24 +79,24 @@ def kim_nelson(
     Parameters
     ----------
     samples
-        Observations of each arm in the order of their seeds; k-th values of different arms may be
-        correlated.
+        Observations of each arm, in the order of their seeds. The k-th observations of different
+        arms may be correlated.
     first
         Number of observations of each arm in the first stage, from which variances are estimated;
         at least 2.
     indifference
         Smallest difference of means worth detecting.
     error
-        Probability of a wrong choice. Default 0.05.
+        Largest permitted probability of a wrong choice. Default 0.05.
     goal
-        `max` or `min`.
+        `max` if the best mean is the largest, `min` if it is the smallest. Default `max`.
     most
-        Maximum number of observations per arm. Default: no limit.
+        Number of observations per arm at which the procedure is stopped. Default: no limit.
 
     Raises
     ------
     InputError
-        If the first stage of an arm is incomplete.
+        If there is no arm, `first` is less than 2, or an arm has fewer than `first` observations.
     """
     names = list(samples)
     if not names or first < 2 or any(len(samples[name]) < first for name in names):

@@ -1,4 +1,4 @@
-"""Sequential stopping: adds runs until a confidence interval is narrow enough."""
+"""Sequential stopping: runs are added until a confidence interval is narrow enough."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ if TYPE_CHECKING:
 def narrow_enough(values: Sequence[float], relative: float, confidence: float = 0.95) -> bool:
     """Return whether the t interval of a mean is narrow enough relative to the mean.
 
-    Implements the sequential procedure of Law and Kelton (Simulation Modeling and Analysis, section
-    on confidence intervals with specified precision, after Chow and Robbins 1965). The half width
-    is compared with relative / (1 + relative) times the mean, so that the error relative to the
-    true mean is at most `relative`. Because the procedure stops when the sample happens to vary
-    little, the coverage of the interval is somewhat below `confidence` if the procedure starts with
-    few runs (`tests.tools.coverage`).
+    This is the stopping rule of the sequential procedure of Law and Kelton (Simulation Modeling and
+    Analysis, section on confidence intervals with specified precision, after Chow and Robbins
+    1965). The half width is compared with relative / (1 + relative) times the mean, so that the
+    error relative to the true mean is at most `relative` if the interval covers the true mean. As
+    the procedure tends to stop when the sample happens to vary little, the interval covers the true
+    mean with a probability somewhat below `confidence` if the procedure starts with few runs (see
+    `tests.tools.coverage`).
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ def rates(
     end_s: float = float("inf"),
     keys: Sequence[str] = ("arm", "replication"),
 ) -> pd.DataFrame:
-    """Return the rates per hour of every run within a time window.
+    """Return, for every run, amounts per hour within a time window.
 
     Only intervals of the time series that lie completely within the window are counted.
 

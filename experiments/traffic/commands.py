@@ -1,4 +1,4 @@
-"""`rmfs traffic`: experiments with path planners, without orders."""
+"""`rmfs traffic`: experiments with path planners, and growth of computing time with the fleet."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def duel(
     agents: Agents = None,
     tasks: Tasks = None,
 ) -> None:
-    """Drive the same trips with several planners: random trips, or given ones on a .map grid."""
+    """Compare planners on the same trips: random ones or, for a grid in a .map file, given ones."""
     names = planner or duels.all_planners()
     duels.check_planners(names)
     loaded, trips = _given(
@@ -148,7 +148,7 @@ def scale_command(
     seed: Seed = 1,
     out: Annotated[Path, typer.Option(help="Folder of table and picture.")] = Path("results/scale"),
 ) -> None:
-    """Measure how computing time and memory grow from 32 to 2000 robots at constant density."""
+    """Measure how computing time and memory grow with the fleet at a constant density of robots."""
     from rmfs.experiments.traffic import scale
 
     duels.check_planners([planner])

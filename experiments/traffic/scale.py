@@ -1,8 +1,9 @@
-"""Growth of work and memory with the fleet: `rmfs traffic scale`.
+"""Growth of computing time and memory with the fleet: `rmfs traffic scale`.
 
-The layouts are of the default kind, with 28 to 31 waypoints and about 1/16 of a station (with 32
-robots, 1/8) per robot. One planner plans random trips. Each size runs in a separate process, so
-that its memory can be measured. Times are processor times, which equal wall times on an idle core.
+The layouts are generated like the shipped layout `default`, with 28 to 31 waypoints and about 1/16
+of a station (with 32 robots, 1/8) per robot. One planner plans random trips. Each size has its
+own process, so that its memory can be measured. Times are processor times, which equal wall times
+on an otherwise idle core.
 """
 
 from __future__ import annotations
@@ -54,9 +55,9 @@ class Size:
     horizontal, vertical
         Numbers of aisles.
     long_sides, short_sides
-        Numbers of stations: there are `long_sides` pick stations in the east and as many
-        replenishment stations in the west, `short_sides` pick stations in the north and as many
-        replenishment stations in the south.
+        Numbers of stations on a side: `long_sides` pick stations in the east, `long_sides`
+        replenishment stations in the west, `short_sides` pick stations in the north and
+        `short_sides` replenishment stations in the south.
     """
 
     robots: int
@@ -66,7 +67,7 @@ class Size:
     short_sides: int
 
     def layout(self, robots: int | None = None) -> Layout:
-        """Generate the layout; another number of robots may be given."""
+        """Generate the layout; `robots`, if given, replaces the number of robots."""
         long_, short = self.long_sides, self.short_sides
         values: dict[str, Any] = {
             "robots": self.robots if robots is None else robots,
@@ -110,7 +111,7 @@ def table(
     planner
         The planner, as for `rmfs.experiments.traffic.duel.settings`.
     tell
-        Function called with each row as soon as it is measured.
+        Function called with the text of each row as soon as the row is measured.
     """
     rows = []
     for size in SIZES:
@@ -124,7 +125,10 @@ def table(
 
 
 def measure(size: dict[str, int], planner: str, duration_s: float, seed: int) -> dict[str, float]:
-    """Measure one size; this process must have done nothing else."""
+    """Measure one size.
+
+    The process must have done nothing else before, so that its memory is that of this size.
+    """
     made = Size(**size)
     small, layout = made.layout(1), made.layout()
     before_mb = resident_mb()
@@ -172,12 +176,12 @@ def resident_mb() -> float:
 
 
 def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
-    """Write table and plot to a folder, each with its provenance file.
+    """Write the table (CSV and Markdown) and the plot to a folder, each file with its provenance.
 
     Parameters
     ----------
     settings
-        Further settings that determine the figures, for the provenance files.
+        Settings that determine the results, to be recorded in the provenance files.
     """
     paths = [out / f"scale.{ending}" for ending in ("csv", "md", "png")]
     save_table(frame, paths[0], DECIMALS)

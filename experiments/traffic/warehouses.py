@@ -1,9 +1,10 @@
 """Growth of the computing time of whole warehouses with the fleet: `rmfs traffic warehouses`.
 
-The layouts are of the default kind, with about ten pods and 1/12 of a pick station per robot. The
-backlog is constant, and rules decide. Each run has its own process, so that its memory can be
-measured. Times are processor times, which equal wall times on an idle core. Two windows are
-measured: the initial rush, and a later one in normal operation.
+The layouts are generated like the shipped layout `default`, with about ten pods and 1/12 of a pick
+station per robot. The backlog is constant, and rules decide. Each run has its own process, so that
+its memory can be measured. Times are processor times, which equal wall times on an otherwise idle
+core. Two windows of simulated time are measured: the rush at the start, and a later window, in
+normal operation.
 """
 
 from __future__ import annotations
@@ -46,7 +47,8 @@ class Site:
     horizontal, vertical
         Numbers of aisles.
     picks, replenishments
-        Numbers of stations in the east, west, north and south.
+        Numbers of pick stations and of replenishment stations, each in the east, west, north and
+        south.
     """
 
     robots: int
@@ -56,7 +58,7 @@ class Site:
     replenishments: tuple[int, int, int, int]
 
     def layout(self) -> Layout:
-        """Generate the layout; blocks of only 2 x 2 storage locations give it enough aisles."""
+        """Generate the layout, with many aisles between small blocks (2 x 2 storage locations)."""
         values: dict[str, Any] = {
             "robots": self.robots,
             "horizontal_aisles": self.horizontal,
@@ -98,7 +100,7 @@ def table(
     check: bool = False,
     tell: Callable[[str], None] = print,
 ) -> pd.DataFrame:
-    """Measure the sites in a range of fleet sizes under all rules; return one row per combination.
+    """Measure sites of several fleet sizes under all sets of rules; return one row per pair.
 
     Parameters
     ----------
@@ -109,9 +111,9 @@ def table(
     later_s
         Start of the later window, in s.
     check
-        Whether the motion is recorded and checked; times and memory then include that.
+        Whether the motion is recorded and checked; times and memory then include the recording.
     tell
-        Function called with each row as soon as it is measured.
+        Function called with the text of each row as soon as the row is measured.
     """
     rows = []
     for site in SITES:
@@ -125,7 +127,10 @@ def table(
 def measure(
     site: dict[str, Any], rules: str, later_s: float, seed: int, check: bool
 ) -> dict[str, Any]:
-    """Measure one site under one set of rules; this process must have done nothing else."""
+    """Measure one site under one set of rules.
+
+    The process must have done nothing else before, so that its memory is that of this site.
+    """
     made = Site(**site)
     layout = made.layout()
     simulation = Simulation(
@@ -171,7 +176,7 @@ def measure(
 
 
 def advance_by_windows(simulation: Simulation, until_s: float) -> int:
-    """Advance a run by windows; return the most robots that stood still throughout a window.
+    """Advance a run window by window, and count the robots that stand still throughout a window.
 
     Parameters
     ----------
@@ -183,8 +188,8 @@ def advance_by_windows(simulation: Simulation, until_s: float) -> int:
 
     Returns
     -------
-    Number of robots, as `standing_with_work` counts them. The last window, of at most `WINDOW_S`,
-    is not included.
+    The largest count of any window, by `standing_with_work`. The last window, of at most
+    `WINDOW_S`, is not included.
     """
     most = 0
     motion = simulation.traffic.motion()
@@ -199,7 +204,7 @@ def advance_by_windows(simulation: Simulation, until_s: float) -> int:
 
 
 def standing_with_work(motion: dict[str, NDArray[Any]]) -> int:
-    """Return how many robots had a destination but did not move during a whole window.
+    """Return how many robots had a destination but stood still throughout a window.
 
     Parameters
     ----------
@@ -228,12 +233,12 @@ def growth(frame: pd.DataFrame) -> dict[str, float]:
 
 
 def save(frame: pd.DataFrame, out: Path, **settings: Any) -> list[Path]:
-    """Write the table to a folder as CSV and Markdown, each file with its provenance file.
+    """Write the table to a folder as CSV and Markdown, each file with its provenance.
 
     Parameters
     ----------
     settings
-        Further settings that determine the figures, for the provenance files.
+        Settings that determine the results, to be recorded in the provenance files.
     """
     paths = [out / f"scale-warehouses.{ending}" for ending in ("csv", "md")]
     for path in paths:

@@ -130,7 +130,7 @@ def import_command(
         ),
     ] = None,
 ) -> None:
-    """Import files of RAWSim-O; report what was left out, what differs, and what was refused."""
+    """Import files of RAWSim-O; report what was left out, differs in rmfs, or was refused."""
     from rmfs.rawsimo.folder import LIST, Imported, import_files
 
     def told(one: Imported) -> None:

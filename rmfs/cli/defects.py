@@ -29,7 +29,7 @@ def told(error: InternalError, arguments: list[str] | None) -> str:
 
 
 def written(error: InternalError, arguments: list[str] | None) -> Path:
-    """Write everything that helps to reproduce a defect to a file in the working folder.
+    """Write a file, in the working folder, with everything that helps to reproduce a defect.
 
     Returns
     -------

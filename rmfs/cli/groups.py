@@ -1,4 +1,4 @@
-"""Commands of other packages, listed here by name and imported when they are called."""
+"""Commands defined in other sub-packages: listed here by name, imported when they are called."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ COMMANDS = {
     "learn": ("rmfs.learning.commands", "Train linear rules on simulated runs."),
     "emulate": (
         "rmfs.demonstrator.commands",
-        "Emulate a room whose robots have the imperfections of physical ones.",
+        "Emulate a room: its floor, and robots with imperfections such as wheel slip.",
     ),
 }
 """Module and help of each single command; the module is imported when it is called."""
@@ -38,7 +38,10 @@ ELSEWHERE = {**SUB_COMMANDS, **COMMANDS}
 
 
 def names_of(kind: Literal["layouts", "scenarios", "controllers"]) -> Callable[[str], list[str]]:
-    """Return a function that lists the shipped instances whose names begin with a given text."""
+    """Return a function that lists the shipped names that begin with a given text.
+
+    They are names of layouts, scenarios or sets of controllers, depending on `kind`.
+    """
 
     def complete(incomplete: str) -> list[str]:
         from rmfs import instances
@@ -49,7 +52,7 @@ def names_of(kind: Literal["layouts", "scenarios", "controllers"]) -> Callable[[
 
 
 class LazyGroup(TyperGroup):
-    """A command group that knows its sub-commands by name and loads one when it is called."""
+    """A command group that imports the commands of `ELSEWHERE` only when they are called."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of all commands, loaded or not."""

@@ -120,7 +120,7 @@ def compare(
         ),
     ] = False,
 ) -> None:
-    """Compare runs, arms or tables: inputs and outputs, paired by seed.
+    """Show how runs, arms or tables differ in inputs and, paired by seed, in outputs.
 
     If runs of an experiment are missing, a note says how many, and the exit code is 3 unless
     `--allow-incomplete` is given.

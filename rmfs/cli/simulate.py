@@ -199,7 +199,7 @@ def kept_decisions(
 ) -> DecisionRecorder:
     """Return an observer that writes one file in a folder for each question asked of an optimiser.
 
-    Questions that belong to no known family are left out.
+    Questions of a kind that the file format does not cover are left out.
     """
     from rmfs.solvers.decisions.recording import DecisionRecorder
 
@@ -210,8 +210,9 @@ def kept_decisions(
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
     """Simulate and show progress.
 
-    If no robot can move any more, a user's rule makes an impossible decision, an optimiser fails or
-    a replay deviates from its recording, the reason is printed and the command exits with code 1.
+    The command prints the reason and exits with code 1 in each of these cases: no robot can move
+    any more; a user's rule makes an impossible decision; an optimiser fails in a run that must be
+    reproducible; a replay deviates from its recording.
 
     Parameters
     ----------
@@ -252,8 +253,9 @@ def default_name(
     Parameters
     ----------
     changes
-        The `--set` arguments. In the name, unsuitable characters are replaced, and a text longer
-        than `LONGEST` characters is cut; in these cases, a hash of the full text is added.
+        The `--set` arguments. The name contains them separated by commas. If this text has
+        unsuitable characters, they are replaced; if it is longer than `LONGEST` characters, it is
+        cut. In both cases, a hash of the full text is added.
     pacing
         The pacing as specified by the user; part of the changes unless it is `instant`.
     """
@@ -269,13 +271,13 @@ def default_name(
 
 
 def proven(done: Run) -> CheckReport:
-    """Check the trace of a run, show that this is being done, and return the report."""
+    """Check the trace of a run and return the report."""
     step("checking the trace")
     return done.check()
 
 
 def conclude(target: Path, footprint: pd.Series, report: CheckReport | None) -> None:
-    """Print the main figures.
+    """Print the main figures of a run.
 
     Exits with code 1 if the trace is unsafe or the units score exceeds 1.
     """

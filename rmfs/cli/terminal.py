@@ -22,7 +22,7 @@ def step(text: str) -> None:
 def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, float], None]]:
     """Yield a function of (done, total) that shows progress by a bar on a terminal, else by a line.
 
-    The line is printed at the first call, so that input errors are reported before it.
+    The line is printed when the function is first called: not at all if the inputs are wrong.
 
     Parameters
     ----------
@@ -52,8 +52,8 @@ def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, floa
 def terminable() -> Iterator[None]:
     """Return a context in which SIGTERM, sent by batch systems, acts like Ctrl-C.
 
-    A command that is ended leaves nothing half-written. Only the main thread can handle signals; in
-    other threads the context has no effect.
+    A command that is ended by SIGTERM leaves nothing half-written. Only the main thread can handle
+    signals; in other threads the context has no effect.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

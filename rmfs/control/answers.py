@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 class Candidates:
-    """The C possible answers to a question: one row per answer, one column per attribute.
+    """The possible answers to a question, C in number: a row per answer, a column per attribute.
 
-    `candidates[row]` is the answer itself, to be passed to `Decision.answer`.
+    `candidates[row]` is the answer of that row, to be passed to `Decision.answer`.
 
     Attributes
     ----------

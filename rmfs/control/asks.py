@@ -35,7 +35,8 @@ class Answer:
     solution
         Values by name; None if there is no solution or none was found in time.
     objective, bound
-        Cost of the solution, and proven lower bound of the cost; not finite where there is none.
+        Cost of the solution, and proven lower bound on the cost of any solution. A value that is
+        not known is not finite.
     status
         Final status, as the solver names it.
     backend
@@ -48,9 +49,9 @@ class Answer:
         Size of the solver's model (nonzeros). With the pacing `work`, the simulated time that the
         answer takes is computed from `work` and `built`.
     scale
-        The amount of which the relative gap is a share, for example the cost of the pods called;
-        in the unit of the objective. Default (nan): the absolute value of the objective, which is
-        unsuitable if gains and costs cancel out.
+        The amount by which `gap_abs` is divided to give the relative gap `gap`, for example the
+        cost of the pods called; in the unit of the objective. Default (nan): the absolute value of
+        the objective, which is unsuitable if gains and costs cancel out.
     found
         All values that the optimiser found, for users who export questions and answers. The run
         folder contains only `solution`, the part that the controller needs.
@@ -58,7 +59,7 @@ class Answer:
     Raises
     ------
     TypeError
-        If the solution is not a mapping, or a cost, time or size is not a number.
+        If the solution is neither a mapping nor None, or a cost, time or size is not a number.
     ValueError
         If `work`, `built`, `wall_s` or `build_s` is negative or not finite, or the bound exceeds
         the objective of a solution by more than `BOUND_TOLERANCE`.
@@ -127,8 +128,8 @@ class Ask(Generic[Q]):
     Attributes
     ----------
     solve
-        The optimiser: a function at the top level of a module, which another process can import. It
-        must always give the same answer to the same question.
+        The optimiser: a function at the top level of a module, so that another process can import
+        it. It must always give the same answer to the same question.
     question
         The relevant state of the world: a frozen dataclass of arrays and numbers copied from the
         view.

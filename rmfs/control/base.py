@@ -54,7 +54,7 @@ class RuleTables(Parameters):
 
 
 class NoParameters(Parameters):
-    """Parameters of a rule that has none."""
+    """The empty set of parameters, for rules that have none."""
 
 
 P = TypeVar("P", bound=Parameters)
@@ -72,10 +72,11 @@ class Controller(Generic[P]):
     problem
         The decision problem that it solves.
     parameters_model
-        Model of its parameters; their file format, `--set` and documentation are derived from it.
+        Class of its parameters, from which their file format, documentation and use in `--set` are
+        derived.
     triggers
         Events after which controllers of the problem are asked for decisions (Merschformann, Xie
-        and Li 2018, table 1), unless a rule overrides them.
+        and Li 2018, table 1); a rule may define other events, or none.
     subscriptions
         Further events after which this controller is asked for decisions.
     hears
@@ -83,7 +84,7 @@ class Controller(Generic[P]):
     waits_for
         Problems whose decisions it waits for; two rules that wait for each other are refused.
     decides
-        Further problems that it decides; for each of them, a dummy must be selected.
+        Further problems that it decides; for each of them, a dummy (`is_dummy`) must be selected.
     is_dummy
         Whether it decides nothing and leaves the problem to another controller.
     optimisers
@@ -91,9 +92,9 @@ class Controller(Generic[P]):
         controllers that ask optimisers.
     goes_on
         Whether `answered` continues where it stopped (`Call.left`) if it is called again with the
-        same call, after a question to a program outside the simulation interrupted it. If
-        the TA rule asks optimisers, this must be true for PPS, PSA and repositioning to be decided
-        outside the simulation.
+        same call, after a question to a program outside the simulation interrupted it. If PPS,
+        PSA or repositioning is decided outside the simulation, this is required of a TA rule that
+        asks optimisers.
     looks_ahead
         Whether it needs the attribute `lookahead`, with which it can try out decisions.
     in_flight
@@ -135,8 +136,9 @@ class Controller(Generic[P]):
 
         This method is called when a question has been answered, even if there is no solution. If
         `goes_on` is true, it may be called again with the same call after an interruption. It adds
-        the number of decisions that are no longer valid to `call.stale`, and wraps decisions that
-        do not come from this answer in `rmfs.control.asks.By`. The base class yields no decisions.
+        to `call.stale` the number of decisions that are no longer valid, and it wraps in
+        `rmfs.control.asks.By` those decisions that do not come from this answer. The base class
+        yields no decisions.
         """
         return iter(())
 
@@ -144,7 +146,8 @@ class Controller(Generic[P]):
         """Return whether a decision is of a kind that the controller's optimisers make.
 
         Only such decisions are counted, either as based on a solution or as made by the
-        controller's own rule. A prepared task is counted when it is carried out.
+        controller's own rule. A task that was prepared by `rmfs.control.decisions.Prepare` is
+        counted when it is carried out.
         """
         return not getattr(decision, "is_ahead", False)
 

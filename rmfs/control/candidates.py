@@ -43,8 +43,8 @@ def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) 
     Parameters
     ----------
     refused
-        Earlier decisions that could not be carried out. They are left out if TA is asked for a
-        decision, and have no effect otherwise.
+        Decisions already made in this turn that could not be carried out. If TA is asked for a
+        decision, they are left out; otherwise, they have no effect.
     """
     if question.kind != "turn":
         return _OF_KIND[question.kind](view, view.robots[question.robot], question.stations)

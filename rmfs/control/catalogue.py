@@ -1,4 +1,4 @@
-"""The catalogue of controllers, written from the code: `python -m rmfs.control.catalogue`."""
+"""Generates the catalogue of controllers from the code: `python -m rmfs.control.catalogue`."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ controller](write-a-controller.md) explains how to add one. This page is generat
 
 
 def markdown() -> str:
-    """Return docs/controllers.md: for each problem, its controllers and their parameters."""
+    """Return the text of docs/controllers.md: all controllers by problem, with their parameters."""
     parts = [HEAD]
     for problem in Problem:
         parts.append(f"## {_heading(problem)}\n")

@@ -1,4 +1,4 @@
-"""Choice of rules: which rule solves each problem, and which rules may be combined."""
+"""Choice of controllers: which one solves each problem, and which may be combined."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SHARED: dict[type[Parameters], str] = {TurnoverParameters: "classes", ZoneParam
 
 @dataclass(frozen=True)
 class Choice:
-    """The rule chosen for a problem, and its validated parameters.
+    """The controller chosen for a problem, and its validated parameters.
 
     Attributes
     ----------
@@ -44,21 +44,21 @@ class Choice:
 
     @property
     def controller(self) -> type[Controller[Any]]:
-        """The class of the rule."""
+        """The class of the controller."""
         return registry.find(self.problem, self.name)
 
     def to_table(self) -> Table:
-        """Return the rule's name and parameters as a table of a controllers file."""
+        """Return the controller's name and parameters as a table of a controllers file."""
         return {"name": self.name, **self.parameters.model_dump(mode="json", exclude_none=True)}
 
 
 def choose(problem: Problem, table: Table, source: str) -> Choice:
-    """Validate the table of a problem: `name` selects the rule, all other keys are parameters.
+    """Validate the table of a problem: `name` selects the controller, other keys are parameters.
 
     Raises
     ------
     InputError
-        If the rule, a key or a value is invalid; the message names the key and what would be valid.
+        If the name, a key or a value is invalid; the message names the key and what would be valid.
     """
     parameters = dict(table)
     name = parameters.pop("name", DEFAULTS[problem])
@@ -75,7 +75,7 @@ def choose(problem: Problem, table: Table, source: str) -> Choice:
 
 
 def check_together(choices: Mapping[Problem, Choice], source: str) -> None:
-    """Refuse rules that cannot be combined.
+    """Refuse controllers that cannot be combined.
 
     Parameters
     ----------
@@ -86,8 +86,8 @@ def check_together(choices: Mapping[Problem, Choice], source: str) -> None:
     ------
     InputError
         If a controller decides a further problem for which no dummy is selected; if a dummy is
-        selected for a problem that no other controller decides; if two rules wait for each other;
-        or if two rules use different turnover classes or zones.
+        selected for a problem that no other controller decides; if two controllers wait for each
+        other's decisions; or if two controllers define turnover classes or zones differently.
     """
     _refuse_mutual_waiting(choices, source)
     _refuse_different_views(choices, source)

@@ -30,10 +30,11 @@ Name = Annotated[str, typer.Argument(help="A .toml or .xconf file, or the name o
 @app.command("list")
 def list_controllers(
     rules: Annotated[
-        bool, typer.Option("--rules", help="List the rules for each decision problem instead.")
+        bool,
+        typer.Option("--rules", help="List the controllers for each decision problem instead."),
     ] = False,
 ) -> None:
-    """List the shipped sets of controllers, or all available rules."""
+    """List the shipped sets of controllers, or all available controllers."""
     Console().print(_rules() if rules else _sets())
 
 
@@ -45,7 +46,7 @@ def show(
         typer.Option("--set", metavar="KEY=VALUE", help="Set a parameter, as in `rmfs run`."),
     ] = None,
 ) -> None:
-    """Print the rules of a set as TOML, with all their parameters, explained in comments."""
+    """Print a set of controllers as TOML, with all parameters explained in comments."""
     overrides = [_below_controllers(text) for text in settings or []]
     read, notes = load_with_notes(controllers, overrides)
     _print_notes(notes)
@@ -54,7 +55,7 @@ def show(
 
 @app.command()
 def check(controllers: Name) -> None:
-    """Check a set of controllers: report what is wrong, or the rules it selects."""
+    """Check a set of controllers: report what is wrong, or the controllers that the set selects."""
     read, notes = load_with_notes(controllers)
     _print_notes(notes)
     choices = read.choices.values()
@@ -72,7 +73,7 @@ def import_command(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:
-    """Convert a RAWSim-O controller configuration, and report the differences."""
+    """Convert a RAWSim-O controller configuration, and report what is left out or differs."""
     if path.suffix.lower() != ".xconf":
         raise InputError(f"{path}: expected a .xconf file")
     target = out if out is not None else Path(f"{path.stem}.toml")

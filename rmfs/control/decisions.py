@@ -1,4 +1,4 @@
-"""The decisions that controllers can make; each is applied before the controller is resumed."""
+"""The decisions that controllers can make; each is applied before the next is made."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class AssignOrder(NamedTuple):
 
 
 class AssignLines(NamedTuple):
-    """POA: assign the lines of an order that are for one of `skus` to a pick station.
+    """POA: assign an order's lines for the SKUs in `skus` to a pick station.
 
     The order is split: its other lines stay in the backlog. If a part of the order is already at
     the station, the lines join that part and share its slot.
@@ -36,9 +36,9 @@ class AssignLines(NamedTuple):
 class QueueOrder(NamedTuple):
     """POA: put an order of the backlog into the pool of a pick station.
 
-    The order remains in the backlog and can only be assigned to this station, but the units that it
-    needs can already be bound to pods. Station -1 removes the order from its pool and releases
-    these units.
+    The order remains in the backlog and can only be assigned to this station, but its requests can
+    already be bound to pods. If `station` is -1, the order is instead removed from its pool, and
+    its requests are open again.
     """
 
     order: Order
@@ -53,7 +53,10 @@ class SendBundle(NamedTuple):
 
 
 class PromiseBundle(NamedTuple):
-    """RPS: choose the pod of a bundle, and reserve room in it; `ReleasePod` releases the bundle."""
+    """RPS: choose the pod of a bundle, and reserve room in the pod.
+
+    The bundle is released later, by `ReleasePod`.
+    """
 
     bundle: Bundle
     pod: int
@@ -62,7 +65,7 @@ class PromiseBundle(NamedTuple):
 class ReleasePod(NamedTuple):
     """RPS: release the bundles promised to a pod.
 
-    A robot can be sent for a bundle once it has been released and ROA has chosen its station.
+    A robot can be sent for a bundle once the bundle is released and ROA has chosen its station.
     """
 
     pod: int
@@ -76,7 +79,7 @@ class BringForPicks(NamedTuple):
     station: int
 
     def task(self) -> Task:
-        """Return the task for this decision, not yet begun."""
+        """Return the task, not yet begun, that carries out this decision."""
         return PickTask(self.robot.index, self.pod, self.station)
 
 
@@ -88,15 +91,15 @@ class BringForBundles(NamedTuple):
     station: int
 
     def task(self) -> Task:
-        """Return the task for this decision, not yet begun."""
+        """Return the task, not yet begun, that carries out this decision."""
         return ReplenishTask(self.robot.index, self.pod, self.station)
 
 
 class Visit(NamedTuple):
     """TA: let a robot bring an available pod, or the pod it carries, to a station.
 
-    The station is neither a pick nor a replenishment station. `what` is the kind of task, as
-    defined by the kind of station.
+    The station is neither a pick nor a replenishment station. `what` is the class of the task,
+    which the kind of station determines.
     """
 
     robot: Robot
@@ -105,21 +108,21 @@ class Visit(NamedTuple):
     what: type[VisitTask]
 
     def task(self) -> Task:
-        """Return the task for this decision, not yet begun."""
+        """Return the task, not yet begun, that carries out this decision."""
         return self.what(self.robot.index, self.pod, self.station)
 
 
 class Park(NamedTuple):
     """TA: let a robot store the pod it carries at a storage location (`place`, a waypoint).
 
-    In a prepared task, `place` may be -1: PSA then chooses the location when the task begins.
+    In a task of `Prepare`, `place` may be -1: PSA then chooses the location when the task begins.
     """
 
     robot: Robot
     place: int
 
     def task(self) -> Task:
-        """Return the task for this decision, not yet begun."""
+        """Return the task, not yet begun, that carries out this decision."""
         return ParkTask(self.robot.index, place=self.place)
 
 
@@ -131,7 +134,7 @@ class Reposition(NamedTuple):
     place: int
 
     def task(self) -> Task:
-        """Return the task for this decision, not yet begun."""
+        """Return the task, not yet begun, that carries out this decision."""
         return RepositionTask(self.robot.index, self.pod, place=self.place)
 
 
@@ -142,7 +145,7 @@ class Rest(NamedTuple):
     place: int
 
     def task(self) -> Task:
-        """Return the task for this decision, not yet begun."""
+        """Return the task, not yet begun, that carries out this decision."""
         return RestTask(self.robot.index, place=self.place)
 
 
@@ -187,8 +190,8 @@ class Prepare(_Ahead):
     """TA: the next tasks of a robot, in order; they replace earlier prepared tasks.
 
     Prepared tasks reserve nothing. A task is skipped if it is impossible when its turn comes, for
-    example because the pod is claimed, the storage location occupied, or the work done by others.
-    After the last prepared task, TA decides about the robot as usual.
+    example because another robot has the pod or has done the work, or because the storage location
+    is occupied. After the last prepared task, TA decides about the robot as usual.
     """
 
     __slots__ = ()
@@ -203,14 +206,14 @@ class Charge(NamedTuple):
     until_share: float
 
     def task(self) -> Task:
-        """Return the task for this decision, not yet begun."""
+        """Return the task, not yet begun, that carries out this decision."""
         return ChargeTask(
             self.robot.index, station=self.station, until_share=float(self.until_share)
         )
 
 
 class Unplug(NamedTuple):
-    """CA: make a charging robot leave its charger; it then needs a task."""
+    """CA: make a charging robot leave its charger; the robot then needs a new task."""
 
     robot: Robot
 

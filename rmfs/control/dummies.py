@@ -1,8 +1,8 @@
-"""Dummies: placeholders for problems that a joint controller of another problem decides.
+"""Dummies: placeholders for the controllers of problems that a joint controller decides.
 
-A dummy makes no decision: it is not asked, or its answer is that there is nothing to do. A
-controllers file may select a dummy for a problem only if the controller of another problem lists
-this problem in `decides`.
+A joint controller is the controller of another problem and lists these problems in `decides`; only
+for such problems may a controllers file select a dummy. A dummy makes no decision: it is not asked,
+or it answers that there is nothing to do.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class DummyPPS(PodSelection[LateBinding]):
         return -1
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Return the first of the given stations."""
+        """Return the first of the given stations; in runs, the joint controller chooses."""
         return stations[0]
 
 

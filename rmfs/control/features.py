@@ -1,8 +1,9 @@
-"""Features of candidates, as input of policies: scaled columns, and a ranking of the candidates.
+"""Features of candidates, for learning agents and linear rules, and a ranking of the candidates.
 
-`rmfs.control.candidates` lists the possible answers with attributes in seconds, units and metres.
-Here, the columns that rate an answer (not those that contain the number of a robot, pod or station)
-are divided by a scale, so that 1 is a typical value, and clipped at `LIMIT`.
+`rmfs.control.candidates` lists the candidates, that is, the possible answers to a question, with
+their attributes. Here, the attributes that rate an answer become features: they are divided by a
+scale, so that 1 is a typical value, and clipped at `LIMIT`. Attributes that only say which order,
+bundle, robot, pod, station or place the answer concerns are left out.
 """
 
 from __future__ import annotations
@@ -127,7 +128,7 @@ The best candidates are those with the greatest weighted sums of unscaled featur
 
 
 class Feature(NamedTuple):
-    """A feature of a candidate: a column divided by its scale."""
+    """Name, unit, scale and meaning of a feature, whose values are divided by the scale."""
 
     name: str
     unit: str
@@ -148,7 +149,7 @@ def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[
 
 
 def unscaled(candidates: Candidates, kind: str, view: View) -> NDArray[np.float64]:
-    """Return the unscaled features of the C candidates, in order of `COLUMNS`, shape (F, C)."""
+    """Return the F unscaled features of the C candidates, in order of `COLUMNS`, shape (F, C)."""
     columns = candidates.columns
     found = np.empty((len(COLUMNS[kind]), len(candidates)))
     for values, name in zip(found, COLUMNS[kind], strict=True):
@@ -163,9 +164,9 @@ def unscaled(candidates: Candidates, kind: str, view: View) -> NDArray[np.float6
 
 
 def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> NDArray[np.float64]:
-    """Return the F named features of C candidates, scaled and clipped, as an array (C, F).
+    """Return the F features in `names` of C candidates, scaled and clipped, shape (C, F).
 
-    A feature that is missing in `columns` is 0.
+    `columns` contains the unscaled features by name; a feature that is missing there is 0.
     """
     count = len(next(iter(columns.values()))) if columns else 0
     found = np.zeros((count, len(names)))
@@ -179,9 +180,9 @@ def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> 
 def best_rows(
     columns: Mapping[str, NDArray[np.float64]], weights: Mapping[str, float], k: int
 ) -> NDArray[np.intp]:
-    """Return the rows of the k candidates with the greatest weighted sums, the greatest first.
+    """Return the rows of the k candidates whose weighted sums of columns are greatest, best first.
 
-    There are fewer than k rows if there are fewer candidates. Ties go to the earlier row.
+    If there are fewer than k candidates, all rows are returned. Ties go to the earlier row.
     """
     count = len(next(iter(columns.values()))) if columns else 0
     score = np.zeros(count)

@@ -16,12 +16,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """Decisions to compare by trials; the first is the decision of the base rule.
+    """Decisions to compare by trials: simulations of each decision in randomly drawn futures.
+
+    The first decision is the default: that of the base rule, which also makes the later decisions
+    on its problem in every trial.
 
     Attributes
     ----------
     trials
-        Function that tries out one of the decisions in one of the futures.
+        Function that tries out one decision in one of the futures (`rmfs.control.lookahead`).
     count
         Number of decisions.
     samples
@@ -30,7 +33,8 @@ class Comparison:
         Budget of all trials: once this many instants (times at which something happens) have been
         simulated, no further future is tried.
     certainty
-        A decision replaces the first only if its mean advantage exceeds this many standard errors.
+        Another decision replaces the first only if its mean advantage over the first exceeds this
+        many standard errors.
     state
         Numbers that identify the state of the run; they enter the hash of the comparison.
     """
@@ -48,7 +52,7 @@ class Comparison:
 
 
 def solve(question: Comparison) -> Answer:
-    """Find the decision with the greatest mean value, by sequential halving.
+    """Find the decision whose trials have the greatest mean value, by sequential halving.
 
     First, all decisions are tried in one future. Each further round doubles the number of futures
     tried so far. After each round, the base rule's decision and the better half of the others are

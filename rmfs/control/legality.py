@@ -1,4 +1,4 @@
-"""Explains why a decision is impossible in the current world."""
+"""Explains why a decision is impossible in the current state of the warehouse."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ def why_not(given: Any, question: Question, view: View) -> str:
     Parameters
     ----------
     given
-        A decision if the question is of kind `turn`; otherwise a number or a `Move`.
+        A decision if the question is of kind `turn`; otherwise the number of a pod, station or
+        waypoint, or a `Move`.
     """
     if question.kind != "turn":
         return _ANSWERS[question.kind](given, question, view)

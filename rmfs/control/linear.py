@@ -39,7 +39,7 @@ def default_weights(kind: str) -> Weights:
 
     If `STARTS` has weights for this kind, these are returned. Otherwise, each weight in
     `rmfs.control.features.RANKINGS` is multiplied by the scale of its feature. Features without a
-    weight get 0.
+    weight in `RANKINGS` get 0.
     """
     if kind in STARTS:
         return {name: STARTS[kind].get(name, 0.0) for name in COLUMNS[kind]}
@@ -70,7 +70,7 @@ def best_of(
     weights: Weights,
     among: NDArray[np.intp] | None = None,
 ) -> int:
-    """Return the row with the greatest weighted sum; -1 if there is no row to choose from.
+    """Return the row with the greatest weighted sum of features; -1 if there are no rows.
 
     Ties go to the row that comes first in `among`.
 

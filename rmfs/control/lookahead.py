@@ -1,10 +1,11 @@
 """Look-ahead: lets a controller try out decisions before it makes one.
 
 A controller that sets `looks_ahead` is given a `LookAhead`. The controller passes some decisions to
-it and gets trials: simulations of a copy of the run in which one of the decisions is applied and a
-base rule decides afterwards. The future of a copy is drawn anew, from separate random streams, so
-it reveals nothing about the real future. The streams are the same for all compared decisions. A
-controller never has access to the run itself.
+it and gets a function that tries them out. In a trial, a copy of the run is simulated: one of the
+decisions is applied, and a base rule makes the later decisions of the same problem. The future of a
+copy is drawn anew, from separate random streams, so it reveals nothing about the real future. All
+compared decisions can be tried in the same futures. A controller never has access to the run
+itself.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Goal(Parameters):
-    """Weights that define the value of a trial from what happens within its horizon."""
+    """Weights of what happens within the horizon of a trial; they define the trial's value."""
 
     units: float = 1.0
     """Value of a unit picked at the start of the horizon; it falls linearly to 0 at the end."""
@@ -32,7 +33,7 @@ class Goal(Parameters):
     end."""
     units_stored: float = 0.0
     """Value of a unit stored at the start of the horizon; it falls linearly to 0 at the end.
-    With 0, trials value no replenishment, although picked units must be replaced some time."""
+    With 0, replenishment adds no value, although picked units must be replaced some time."""
     overdue_s: float = pydantic.Field(default=0.0, ge=0)
     """Cost of each second by which an order is overdue within the horizon."""
     distance_m: float = pydantic.Field(default=0.0, ge=0)
@@ -47,7 +48,7 @@ class Tried(NamedTuple):
     value
         Value of the trial, as defined by the `Goal`.
     instants
-        Number of simulated instants (times at which something happens), as a measure of work.
+        Number of simulated instants (times at which something happens), as a measure of effort.
     """
 
     value: float
@@ -71,7 +72,7 @@ class Trials(Protocol):
 
 
 class LookAhead(Protocol):
-    """The look-ahead, given to controllers that set `looks_ahead`."""
+    """Function that prepares trials of decisions; given to controllers that set `looks_ahead`."""
 
     def __call__(
         self,
@@ -100,6 +101,6 @@ class LookAhead(Protocol):
         ------
         InputError
             If the future cannot be drawn anew (orders or bundles come from a file), or the run
-            cannot be copied (pacing wall).
+            cannot be copied (the pacing, or that of path planning, is `wall`).
         """
         ...

@@ -30,14 +30,14 @@ class PathLengths:
         self._edges: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]] | None = None
 
     def away(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
-        """Return path lengths from a waypoint to all others, shape (N,), in m; inf: no path.
+        """Return path lengths in m from a waypoint to all N waypoints, shape (N,); inf: no path.
 
         The path of a loaded robot may start and end at a storage location.
         """
         return self._lengths(waypoint, loaded, backwards=False)
 
     def to(self, waypoint: int, loaded: bool) -> NDArray[np.float64]:
-        """Return path lengths from all waypoints to one, shape (N,), in m; inf: no path."""
+        """Return path lengths in m from all N waypoints to one, shape (N,); inf: no path."""
         return self._lengths(waypoint, loaded, backwards=True)
 
     def _lengths(self, waypoint: int, loaded: bool, *, backwards: bool) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Problem(StrEnum):
-    """Decision problems, mostly of Merschformann, Xie and Li (2018, section 2.1).
+    """Decision problems, mostly those of Merschformann, Xie and Li (2018, section 2.1).
 
     The value of a problem is its key in a controllers file.
     """
@@ -46,7 +46,7 @@ class Problem(StrEnum):
     def decisions(self) -> tuple[str, ...]:
         """Names of the classes of its decisions in `rmfs.control.decisions`.
 
-        There are none for PPS, PSA and repositioning, which answer questions of TA, and for PP.
+        PP has none, nor have PPS, PSA and repositioning, which answer questions of TA.
         """
         return _DECLARED[self].decisions
 
@@ -125,10 +125,10 @@ _DECLARED = {
 
 
 class Trigger(IntEnum):
-    """Events that may call for a decision. The subject of each event is given in brackets."""
+    """Events that may call for a decision, each with its subject (if any) in brackets."""
 
     START = 0
-    """The run begins."""
+    """The run begins [no subject]."""
     NEW_ORDER = 1
     """An order joined the backlog [Order]."""
     ORDER_ASSIGNED = 2

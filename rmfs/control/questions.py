@@ -16,11 +16,11 @@ class Question:
     Attributes
     ----------
     kind
-        `turn` asks for the next decision of a problem. The other kinds are questions that TA asks:
-        `pick pod`, `replenishment pod` and `next station` (decided by PPS), `place` (by PSA) and
-        `move` (by repositioning).
+        `turn` asks for the next decision of a problem. All other kinds are questions that TA asks:
+        PPS is asked for a `pick pod`, a `replenishment pod` or the `next station`, PSA for a
+        `place`, and repositioning for a `move`.
     robot
-        The robot for which TA asks; -1 for a turn.
+        The robot for which TA asks; -1 if the kind is `turn`.
     stations
         For `pick pod` and `replenishment pod`, the station; for `next station`, the stations
         to choose from.

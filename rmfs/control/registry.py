@@ -1,8 +1,11 @@
-"""Maps the name of a rule to its controller class.
+"""Maps the name of a controller to its class.
 
-Rules come from three sources: the tables below, which contain only references, so that nothing of
-`solvers` is imported here; entry points named `PROBLEM.NAME` in the group `rmfs.controllers` of
-other installed packages; and `module:Class` or `path/to/file.py:Class` in a controllers file.
+Controllers come from three sources:
+
+- the tables below, which contain references to classes instead of the classes, so that nothing of
+  `rmfs.solvers` is imported here;
+- other installed packages, by entry points named `PROBLEM.NAME` in the group `rmfs.controllers`;
+- classes that a controllers file names as `module:Class` or `path/to/file.py:Class`.
 """
 
 from __future__ import annotations
@@ -146,7 +149,7 @@ _SOLVER_BACKED: dict[Problem, dict[str, str]] = {
 
 
 def names(problem: Problem) -> list[str]:
-    """Return the names of all controllers in `rmfs` and other installed packages for a problem."""
+    """Return the names of all controllers for a problem, in `rmfs` and other installed packages."""
     return [*_BUILT_IN[problem], *solver_backed(problem), *sorted(_installed(problem))]
 
 
@@ -156,7 +159,7 @@ def built_in(problem: Problem) -> list[str]:
 
 
 def solver_backed(problem: Problem) -> list[str]:
-    """Return the names of the controllers for a problem that ask optimisers (in `rmfs.solvers`)."""
+    """Return the names of a problem's controllers in `rmfs.solvers`, which ask optimisers."""
     return list(_SOLVER_BACKED.get(problem, ()))
 
 
@@ -166,7 +169,7 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     Parameters
     ----------
     name
-        A registered name, `module:Class` or `path/to/file.py:Class`.
+        A name that `names` returns, or a class as `module:Class` or `path/to/file.py:Class`.
 
     Raises
     ------

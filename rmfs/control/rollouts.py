@@ -1,4 +1,4 @@
-"""Shared parts of rollout rules: their parameters, the base rule, and the question."""
+"""Shared parts of rollout rules, which try out decisions by simulation before making one."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class TriesOut:
     Attributes
     ----------
     base
-        The rule that makes the default decision, and that decides in trials.
+        The rule that makes the default decision and, in trials, all decisions after the one tried.
     """
 
     looks_ahead: ClassVar[bool] = True
@@ -76,7 +76,7 @@ class TriesOut:
         return float(self.base.next_event_s())
 
     def best(self, call: Call) -> Iterator[Any]:
-        """Yield the decision that did best in the trials, if it is still possible."""
+        """Yield the decision that was chosen by trials, if it is still possible."""
         rows = [] if call.solution is None else [call.solution["row"]]
         for row in call.left("best", rows):
             chosen = call.ask.memo[row]
@@ -89,7 +89,7 @@ class TriesOut:
 def base_rule(
     problem: Problem, parameters: RolloutParameters, view: View, rng: np.random.Generator
 ) -> Any:
-    """Create the base rule.
+    """Create the base rule, which `parameters.base` selects.
 
     Raises
     ------

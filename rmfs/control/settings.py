@@ -1,4 +1,4 @@
-"""The controllers file: the rule for each problem, with its parameters."""
+"""The controllers file: the controller of each decision problem, with its parameters."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class ControllerSettings:
     Attributes
     ----------
     choices
-        The rule chosen for each problem, with its parameters.
+        The controller chosen for each problem, with its parameters.
     """
 
     name: str
@@ -45,7 +45,7 @@ class ControllerSettings:
         return head | {str(problem): choice.to_table() for problem, choice in self.choices.items()}
 
     def rules(self) -> list[type[Controller[Any]]]:
-        """Return the classes of all rules, each once, including those that MM may install."""
+        """Return the classes of all controllers, each once, including those that MM may install."""
         named = dict.fromkeys(_rules_in(self.to_table()))
         return list(dict.fromkeys(registry.find(problem, name) for problem, name in named))
 
@@ -88,18 +88,18 @@ def load_with_notes(
         A TOML file, a file of RAWSim-O (.xconf), or the name of a shipped set.
     overrides
         Pairs of a key path and a value, for example `(["psa", "name"], "random")`. An override that
-        selects another rule drops the parameters of the previous rule. `(["psa"], "random")` has
-        the same effect as `(["psa", "name"], "random")`.
+        selects another controller drops the parameters of the previous one. `(["psa"], "random")`
+        has the same effect as `(["psa", "name"], "random")`.
 
     Returns
     -------
-    The controllers, and notes on what an import has left out or converted with differences.
+    The controllers, and notes on what an import has left out and what differs from RAWSim-O.
 
     Raises
     ------
     InputError
-        If there is no such file or set, or its contents are invalid; the message names the key and
-        what would be valid.
+        If there is no such file or set, or the contents are invalid; the message then names the
+        key and what would be valid.
     """
     path = instances.locate("controllers", str(name_or_path))
     if path.suffix.lower() == ".xconf":

@@ -1,4 +1,4 @@
-"""The text format of recorded solutions, which preserves numbers to the last bit."""
+"""Recording of optimisers' solutions as text; numbers are preserved to the last bit."""
 
 from __future__ import annotations
 
@@ -16,19 +16,22 @@ _ARRAY = "array"
 
 
 def to_text(solution: Mapping[str, Plain]) -> str:
-    """Write a solution as JSON; arrays keep their type and shape.
+    """Return a solution as JSON; `from_text` restores arrays with their type and shape.
 
     Raises
     ------
     TypeError
-        If the solution contains anything but JSON values and NumPy arrays or scalars; the latter
-        two may consist of numbers, truth values or strings.
+        If the solution contains anything other than JSON values, tuples, and NumPy arrays or
+        scalars of real numbers, truth values or strings.
     """
     return json.dumps({str(name): value for name, value in solution.items()}, default=_plain)
 
 
 def from_text(text: str) -> dict[str, Any]:
-    """Read a solution written by `to_text`; tuples and other sequences are returned as lists."""
+    """Return the solution that `to_text` has written as `text`.
+
+    Tuples are returned as lists, and NumPy scalars as Python values.
+    """
     solution: dict[str, Any] = json.loads(text, object_hook=_array)
     return solution
 

@@ -28,8 +28,8 @@ def tasks(
 ) -> Candidates:
     """List the possible tasks of robots that need a task or are at rest.
 
-    Each row of the candidates is a task. The object of its decision is created only when the row is
-    accessed, since most rows are only compared.
+    Each row of the candidates is a task. The decision for it (for example, `WorkFor`) is created
+    only when the row is accessed, since of most rows only the columns are needed.
 
     Parameters
     ----------
@@ -66,7 +66,10 @@ def tasks(
 
 
 def has_tasks(view: View) -> bool:
-    """Return whether a robot needs a task, or one at rest could do more than move an idle pod."""
+    """Return whether there is more for TA to decide than which idle pods to move.
+
+    This is so if a robot needs a task, or if one at rest could work for a station or store its pod.
+    """
     if view.asking:
         return True
     busy = any(station.has_open_work for station in view.stations)

@@ -24,8 +24,8 @@ Metric = Literal["euclidean", "manhattan", "path", "time"]
 class TravelTimes(Protocol):
     """The part of the traffic model that knows travel times.
 
-    Travel times depend on the kind of robot, which is given by the number of a robot of that kind.
-    Default: robot 0.
+    Travel times depend on the kind of robot: they are those of the kind to which robot number
+    `robot` belongs (default: 0).
     """
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = ...) -> NDArray[np.float64]:
@@ -39,16 +39,16 @@ class TravelTimes(Protocol):
         ...
 
     def robot_waypoint(self, robot: int) -> int:
-        """Return where a robot stands, or the next waypoint at which it stops."""
+        """Return the next waypoint at which a robot will stop; without a plan, where it stands."""
         ...
 
     def heat(self) -> dict[str, NDArray[Any]]:
-        """Return, by name, arrays with the visits and waiting times (s) of robots at waypoints."""
+        """Return by name how often robots reached waypoints, and how long they stood there (s)."""
         ...
 
 
 class TravelTables:
-    """Cached travel times and distances, shared by a run and the copies of it made for trials.
+    """Cached travel times and distances, shared by a run and its copies for trying out decisions.
 
     Attributes
     ----------
@@ -56,11 +56,11 @@ class TravelTables:
         Lengths of shortest paths.
     distances
         Distances from all waypoints to one, shape (N,). The key consists of this waypoint, the
-        metric, and whether the robot is loaded. Path lengths from waypoint w to all others have the
-        key ``~w`` instead of w.
+        metric, and whether the robot is loaded. For path lengths in the other direction, from
+        waypoint w to all others, the key contains ``~w`` instead of w.
     to, away
-        Travel times to a waypoint, and from it, shape (N,). The key consists of the waypoint and
-        whether the robot is loaded.
+        Travel times from all waypoints to one (`to`), or from one to all (`away`), shape (N,). The
+        key consists of the one waypoint and whether the robot is loaded.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -74,8 +74,9 @@ class Travel:
     """Travel times and distances between waypoints.
 
     Travel times come from the traffic model. They are those of robot 0's kind, from standstill to
-    standstill with the best initial heading. Times and distances are cached per waypoint. Request
-    them only for stations, of which there are few, and use `estimate_s` for other waypoints.
+    standstill with the best initial heading. Times and distances between a waypoint and all others
+    are cached. Request them only for stations, of which there are few, and use `estimate_s` for
+    other waypoints.
 
     Parameters
     ----------
@@ -107,7 +108,7 @@ class Travel:
         self._other_tier_m = 1 + max(tier.length_m + tier.width_m for tier in layout.tiers)
 
     def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
-        """Return unhindered times from all waypoints to this one, in s, (N,); inf if no path."""
+        """Return unhindered times from all waypoints to one, shape (N,), in s; inf: no path."""
         times = self.tables.to.get((waypoint, loaded))
         if times is None:
             times = self.tables.to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
@@ -116,7 +117,7 @@ class Travel:
     def away(self, waypoint: int, *, loaded: bool, keep: bool = True) -> NDArray[np.float64]:
         """Return unhindered times from this waypoint to all, shape (N,), in s; inf: no path.
 
-        With `keep=False`, the times are not cached, for callers that cache those they need.
+        With `keep=False`, the times are not cached; this is for callers that have their own cache.
         """
         times = self.tables.away.get((waypoint, loaded))
         if times is None:
@@ -128,9 +129,9 @@ class Travel:
     def distances_to(
         self, waypoint: int, metric: Metric, *, loaded: bool = True
     ) -> NDArray[np.float64]:
-        """Return distances from every waypoint to this one, shape (N,), in m, or s for `time`.
+        """Return distances from all waypoints to this one, shape (N,), in m; for `time`, in s.
 
-        `loaded` matters for `path` and `time` only.
+        `loaded` matters for the metrics `path` and `time` only.
         """
         if metric == "time":
             return self.to(waypoint, loaded=loaded)
@@ -141,9 +142,10 @@ class Travel:
     def distances_from(
         self, waypoint: int, metric: Metric, *, loaded: bool = True, keep: bool = True
     ) -> NDArray[np.float64]:
-        """Return distances from this waypoint to all others, shape (N,), in m, or s for `time`.
+        """Return distances from this waypoint to all, shape (N,), in m; for `time`, in s.
 
-        With `keep=False`, times are not cached. `loaded` matters for `path` and `time` only.
+        With `keep=False`, travel times (metric `time`) are not cached. `loaded` matters for the
+        metrics `path` and `time` only.
         """
         if metric == "time":
             return self.away(waypoint, loaded=loaded, keep=keep)
@@ -160,10 +162,10 @@ class Travel:
         *,
         loaded: bool = True,
     ) -> NDArray[np.float64]:
-        """Return distances from a waypoint to others, shape (n,), in m, or s for `time`.
+        """Return distances from a waypoint to others, shape (n,), in m; for `time`, in s.
 
         Euclidean and Manhattan distances are recomputed at each call, which suits waypoints that
-        are rarely requested again. `loaded` matters for `path` and `time` only.
+        are rarely requested again. `loaded` matters for the metrics `path` and `time` only.
         """
         if metric == "euclidean":
             return self.metres(waypoint, others)
@@ -196,9 +198,9 @@ class Travel:
     def manhattan_metres(
         self, waypoint: int | _Waypoints, others: _Waypoints
     ) -> NDArray[np.float64]:
-        """Return Manhattan distances in m to other waypoints, plus a surcharge for other tiers.
+        """Return Manhattan distances between waypoints, in m, with a surcharge between tiers.
 
-        The shape is (n,), or (m, n) if `waypoint` contains several waypoints, shape (m, 1).
+        The shape is (n,), or (m, n) if `waypoint` is an array of shape (m, 1).
         """
         distance: NDArray[np.float64] = np.abs(self._x[others] - self._x[waypoint])
         distance += np.abs(self._y[others] - self._y[waypoint])
@@ -209,21 +211,21 @@ class Travel:
     def estimate_s(self, waypoint: int | _Waypoints, others: _Waypoints) -> NDArray[np.float64]:
         """Estimate travel times to other waypoints, in s, from Manhattan distances.
 
-        The estimate is the time for the distance at top speed plus the time for a quarter turn.
-        Speed and turning time are those of the slowest kinds of robot. Waypoints on other tiers get
-        a surcharge.
+        The estimate is the time for the distance at top speed plus the time for a quarter turn. The
+        speed is the lowest, and the time for turning the longest, of all kinds of robot. Waypoints
+        on other tiers get a surcharge.
 
         Parameters
         ----------
         waypoint
-            One waypoint, or several of shape (m, 1).
+            One waypoint, m waypoints, shape (m, 1), or one for each of `others`, shape (n,).
         others
             Waypoints, shape (n,).
 
         Returns
         -------
         NDArray
-            Seconds, shape (n,), or (m, n) for several waypoints.
+            Seconds, shape (n,), or (m, n) if `waypoint` has shape (m, 1).
         """
         seconds = self.manhattan_metres(waypoint, others)
         seconds *= self._seconds_per_metre
@@ -231,7 +233,7 @@ class Travel:
         return seconds
 
     def metres(self, waypoint: int, others: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
-        """Return Euclidean distances in m to waypoints, plus a surcharge for other tiers, (n,)."""
+        """Return Euclidean distances in m to others, shape (n,), with a surcharge between tiers."""
         x, y = self._x[others] - self._x[waypoint], self._y[others] - self._y[waypoint]
         distance: NDArray[np.float64] = np.sqrt(
             x * x + y * y
@@ -241,7 +243,7 @@ class Travel:
         return distance
 
     def robot_waypoint(self, robot: int) -> int:
-        """Return where a robot stands, or the next waypoint at which it stops."""
+        """Return the next waypoint at which a robot will stop; without a plan, where it stands."""
         return self._times.robot_waypoint(robot)
 
     def passages(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:

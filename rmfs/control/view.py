@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class View:
-    """The state of the world as controllers see it, which they may read but not change.
+    """The state of the world as controllers see it; they may read but not change it.
 
     The arrays are read-only. Controllers may read the attributes of objects (orders, stations,
     robots), but must not call methods that change something.
@@ -34,9 +34,10 @@ class View:
     layout, skus
         The warehouse and the SKUs.
     inventory
-        Stock: contained, available and promised units (`rmfs.world.inventory`).
+        Stock: units contained and available, and space promised (`rmfs.world.inventory`).
     storage
-        Storage locations, pods, and claims of robots on them (`rmfs.world.storage`).
+        Where pods are stored, and which pods and storage locations robots have reserved
+        (`rmfs.world.storage`).
     orders, bundles
         The backlogs of orders and of bundles (`rmfs.world.backlog`).
     pick_stations, replenishment_stations, stations
@@ -45,9 +46,9 @@ class View:
     all_stations
         All stations, including those of other kinds, which come last.
     slot_news, work_news
-        Notifications of pick stations that were switched on or off, were reached or left by a
-        robot, or gained or lost an order; and of stations that gained open work or may have none
-        left (`rmfs.world.news`).
+        Notifications (`rmfs.world.news`). `slot_news` tells which pick stations were switched on or
+        off, were reached or left by a robot, or gained or lost an order; `work_news` tells which
+        stations gained open work or may have none left.
     need
         Open units per pick station and SKU, shape (S, K): units that the station's open orders need
         and that are not bound to a pod.
@@ -130,10 +131,10 @@ class View:
         return self._world.staff
 
     def unit_s(self, station: int) -> float:
-        """Return the mean time per unit at a pick station, in s, with its picker's present state.
+        """Return the mean time per unit at a pick station, in s, at its picker's present speed.
 
         The additional time for layers and faces of a pod and for picking errors is not included.
-        Without a picker, the time is that of the layout.
+        Without a picker, the time is the one given by the layout.
         """
         staff = self._world.staff
         if staff is None or staff.at_station[station] is None:
@@ -142,7 +143,7 @@ class View:
 
     @property
     def split_orders(self) -> Mapping[int, Order]:
-        """The split orders of which units are still to be picked, by index."""
+        """The split orders that still have units to be picked, by index."""
         return self._world.split_orders
 
     @cached_property
@@ -179,7 +180,7 @@ class View:
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:
-        """Return the waypoint of the pod that a robot is to fetch; if none, `robot.waypoint`."""
+        """Return the waypoint of the pod that a robot fetches, or `robot.waypoint` if none."""
         task = robot.task
         if task is None or task.pod < 0 or robot.pod >= 0:
             return robot.waypoint

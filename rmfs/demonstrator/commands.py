@@ -59,7 +59,7 @@ Tags = Annotated[
 Secret = Annotated[
     Path | None,
     typer.Option(
-        help=f"File of the shared secret. [default: variable {settings.SECRET}]",
+        help=f"File of the shared secret. [default: environment variable {settings.SECRET}]",
         show_default=False,
     ),
 ]
@@ -112,10 +112,11 @@ def demonstrate(
         ),
     ] = False,
 ) -> None:
-    """Run a warehouse with real robots and write a run folder.
+    """Run a warehouse with real robots, or emulated ones, and write a run folder.
 
-    If the command is killed, calling it again with the same arguments resumes the demonstration.
-    With `--robots emulated`, the demonstration starts again instead, with the same result.
+    If the command is killed, run it again with the same arguments to resume the demonstration.
+    With `--robots emulated`, the demonstration then starts from the beginning; the result is the
+    same as without the interruption.
     """
     from rmfs.cli.simulate import conclude, default_name
     from rmfs.cli.terminal import progress, step
@@ -213,13 +214,18 @@ def emulate(
     ] = 0.04,
     memory: Annotated[
         Path | None,
-        typer.Option(help="Folder in which robots store their route orders.", show_default=False),
+        typer.Option(
+            help="Folder in which robots store the routes that they have been ordered to "
+            "drive. [default: a temporary folder]",
+            show_default=False,
+        ),
     ] = None,
     duration_s: Annotated[
         float | None,
         typer.Option(
             min=0.0,
-            help="End after this time in seconds. [default: with the server]",
+            help="End after emulating this many seconds. [default: when the server ends; "
+            "with tcp://, never]",
             show_default=False,
         ),
     ] = None,
@@ -228,7 +234,7 @@ def emulate(
         typer.Option(help="JSON file for measurements of the true motion.", show_default=False),
     ] = None,
 ) -> None:
-    """Emulate a room whose robots have the imperfections of physical ones."""
+    """Emulate a room: its floor, and robots with imperfections such as wheel slip."""
     try:
         from rmfs.demonstrator.emulator.pace import RealTime
         from rmfs.demonstrator.emulator.room import Address, Room

@@ -1,4 +1,4 @@
-"""The settings of a demonstration, read from options and validated."""
+"""The settings of a demonstration (a run with real robots), from command-line options."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ SHORTEST_SECRET = 8
 
 
 def address(url: str, option: str) -> tuple[str, str, int]:
-    """Return the scheme, host and port of an address.
+    """Return the scheme (`tcp` or `room`), host and port of an address.
 
     Raises
     ------
     InputError
-        If the text is not a valid address.
+        If `url` has neither the form tcp://HOST:PORT nor room://HOST:PORT.
     """
     try:
         parts = urlsplit(url)
@@ -43,12 +43,14 @@ def address(url: str, option: str) -> tuple[str, str, int]:
 
 
 def secret(file: Path | None) -> bytes:
-    """Return the secret from a file, or from the environment variable.
+    """Return the secret that the server shares with the robots.
+
+    It is read from the file or, if `file` is None, from the environment variable `RMFS_SECRET`.
 
     Raises
     ------
     InputError
-        If there is no secret, or it is too short.
+        If the secret is missing or too short, or the file cannot be read.
     """
     try:
         given = os.environ.get(SECRET, "") if file is None else file.read_text(encoding="utf-8")
@@ -65,19 +67,19 @@ def secret(file: Path | None) -> bytes:
 
 
 def robots(layout: Layout, chosen: str | None, option: str = "--real") -> dict[str, int]:
-    """Return the names of the robots outside the simulation, with their indices in the layout.
+    """Return the names of the real or emulated robots, with their indices in the layout.
 
     Parameters
     ----------
     layout
-        The warehouse. Its robot with index 3 is called `robot-3`.
+        The warehouse. The robot with index 3 is called `robot-3`.
     chosen
         Indices of the robots, separated by commas; None for all robots.
 
     Raises
     ------
     InputError
-        If there is no such robot, or one is named twice.
+        If an index belongs to no robot of the layout, or is given twice.
     """
     indices = list(range(layout.robots)) if chosen is None else _indices(chosen)
     if not indices or not set(indices) <= set(range(layout.robots)):
@@ -91,7 +93,7 @@ def robots(layout: Layout, chosen: str | None, option: str = "--real") -> dict[s
 
 
 def tags(layout: Layout, file: Path | None) -> list[str]:
-    """Return the tag of every waypoint.
+    """Return, for every waypoint, the tag on the floor that robots read there.
 
     Parameters
     ----------

@@ -32,14 +32,17 @@ class SwapParameters(Model):
 
 
 class RecoveryKind(StationKind):
-    """Kind of station to which charge assignment (CA) sends robots without pods to get energy."""
+    """Kind of station where robots without pods get energy.
+
+    Charge assignment (CA) sends them there.
+    """
 
     task = "rmfs.world.charging:ChargeTask"
     state = "rmfs.world.charging:RecoveryStation"
 
     @property
     def head_w(self) -> float:
-        """Power in W that charges the battery of the robot at the station; 0 if it is exchanged."""
+        """Power in W for charging a robot's battery at the station; 0 if the battery is swapped."""
         return 0.0
 
     @property
@@ -65,12 +68,12 @@ class Charger(RecoveryKind):
 
     @property
     def long_run_w(self) -> float:
-        """Charging power of the charger, in W, as if it were always occupied."""
+        """Charging power in W: the average power of a charger that is always occupied."""
         return self.head_w
 
 
 class Swap(RecoveryKind):
-    """A swap station: a robot gets the fullest battery in stock; its own is charged there."""
+    """A swap station: a robot gets the fullest battery in stock and leaves its own for charging."""
 
     name = "swap"
     letter = "B"

@@ -18,7 +18,15 @@ if TYPE_CHECKING:
 
 
 def pick_stations(ranked: Ranked, given: Given) -> tuple[PickStation, ...]:
-    """Return the pick stations, one for each pair of a queue and its activation rank."""
+    """Return the pick stations.
+
+    Parameters
+    ----------
+    ranked
+        For each station, its queue (head first) and its rank in the order of activation.
+    given
+        Parameters of the layout.
+    """
     return tuple(
         PickStation(
             waypoint=queue[0],
@@ -34,7 +42,7 @@ def pick_stations(ranked: Ranked, given: Given) -> tuple[PickStation, ...]:
 
 
 def replenishment_stations(ranked: Ranked, given: Given) -> tuple[ReplenishmentStation, ...]:
-    """Return the replenishment stations, one for each pair of a queue and its activation rank."""
+    """Return the replenishment stations; the parameters are those of `pick_stations`."""
     return tuple(
         ReplenishmentStation(
             waypoint=queue[0],

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def compressed(
     waypoints: int, edges: Iterable[tuple[int, int]]
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Return `edge_start` and `edge_target` (see `Layout`) for directed edges, each kept once."""
+    """Return directed edges, without duplicates, as `edge_start` and `edge_target` of `Layout`."""
     pairs = np.array(sorted(set(edges)), dtype=np.int32).reshape(-1, 2)
     start = np.zeros(waypoints + 1, dtype=np.int32)
     np.cumsum(np.bincount(pairs[:, 0], minlength=waypoints), out=start[1:])

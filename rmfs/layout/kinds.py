@@ -1,10 +1,11 @@
-"""Kinds of station: everything that belongs to one, from layout file to viewer colour.
+"""Kinds of station, each with all that is particular to it, from parameters to viewer colour.
 
 A kind is one class that names its parts, each by class or by reference (`module:Class`). References
-are used because layouts, which hold their kinds, are read without importing the modules that
-simulate. Pick and replenishment stations are kinds like any other. Other kinds are named in layout
-files by `module:Class`, by `path/to/file.py:Class`, or by the name under which a distribution
-registers them in the entry-point group `rmfs.stations`.
+are used so that a layout, which holds the kinds of its stations, can be read without importing the
+modules that simulate. Pick and replenishment stations are kinds like any other. Other kinds are
+named in layout files by `module:Class`, by `path/to/file.py:Class`, or by a registered name:
+`charger`, `swap`, or a name that an installed Python package registers in the entry-point group
+`rmfs.stations`.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ T = TypeVar("T")
 
 
 class NoParameters(Model):
-    """Parameters of a kind that has none."""
+    """Empty model, for kinds of station without parameters."""
 
 
 class StationKind:
@@ -57,20 +58,22 @@ class StationKind:
     colour
         Colour of the stations, and of robots on their way to them.
     handles
-        What its stations handle, for counts in the viewer.
+        What the viewer counts at the stations, such as `units picked`.
     parameters_model
         Model of the parameters.
     task
-        Kind of task that brings a robot to such a station, as a subclass of `VisitTask`.
+        Class of the tasks that bring robots to the stations; for kinds other than pick and
+        replenishment, a subclass of `VisitTask`.
     state
-        State of a station during a run, as a subclass of `Station`.
+        Class of the state of a station during a run, a subclass of `Station`.
     service
-        Handling of a pod at the head of the queue, as a subclass of `Service`.
+        Class that serves the robot at the head of the queue; it has the interface of `Service`.
     controller
-        Controller that decides which pod visits a station and when, as a subclass of
+        Class of the controller that decides which pod visits a station and when, a subclass of
         `VisitController`; None if the controllers of the decision problems decide this.
     measures
-        Measures whose columns the footprint contains if there are such stations.
+        Classes of measures; the footprint contains their columns if the layout has stations of the
+        kind.
     """
 
     name: ClassVar[str]
@@ -88,13 +91,16 @@ class StationKind:
         self.parameters: Any = self.parameters_model() if parameters is None else parameters
 
     def digested(self) -> tuple[object, ...]:
-        """Return what identifies the kind: name, SHA-256 of its source files, and parameters."""
+        """Return what identifies the kind: name, SHA-256 of each source file, and parameters.
+
+        Source files of rmfs itself are left out.
+        """
         files = sources([type(self)]).values()
         written = sorted(hashlib.sha256(path.read_bytes()).hexdigest() for path in files)
         return self.name, written, self.parameters.model_dump(mode="json")
 
     def part(self, name: str, base: type[T]) -> type[T]:
-        """Return the class of one of its parts, such as `service`; it must be derived from `base`.
+        """Return the class of a part, such as `service`; the class must be derived from `base`.
 
         Raises
         ------
@@ -194,8 +200,8 @@ def station_kind(
     reference
         Reference to its class, as in the layout file.
     folder
-        Folder where a file named in `reference` is looked for first. Default: the working
-        directory.
+        Folder that is searched, before the working directory, for a file named in `reference`.
+        Default: only the working directory.
 
     Raises
     ------

@@ -43,14 +43,15 @@ def load_with_notes(
     ----------
     name_or_path
         A shipped layout, or a file: `.toml` (parameters), `.json` (explicit layout), `.txt` (drawn
-        as text), `.xlayo` or `.xinst` (RAWSim-O), or `.map` (grid map, with the stations and
-        storage locations of `NAME.map.toml` beside it, or without stations for traffic
-        experiments).
+        as text), `.xlayo` or `.xinst` (RAWSim-O), or `.map` (grid map). The stations and storage
+        locations of `NAME.map` are read from `NAME.map.toml` beside it; without that file, the
+        layout has none and serves for traffic experiments.
     overrides
-        (path, value) pairs such as `(["robots"], 16)`. Generated and drawn layouts accept their
-        parameters, which are changed before they are validated, and the keys in `FACTORS`, which
-        are applied to the finished layout. All other layouts accept the keys of
-        `ExplicitOverrides`.
+        Pairs of a key, as a list of its parts, and its new value, such as `(["robots"], 16)`. For
+        `.toml`, `.xlayo`, `.txt`, and `.map` with stations, a key is either one of the parameters
+        from which the layout is made, which are validated only after the change, or one of
+        `FACTORS`, which are applied to the finished layout. For all other files, it is one of the
+        keys of `ExplicitOverrides`.
 
     Returns
     -------
@@ -59,7 +60,7 @@ def load_with_notes(
     Raises
     ------
     InputError
-        If the layout cannot be found, read or generated; one line lists all errors.
+        If the layout cannot be found, read or generated; the message lists the errors in one line.
     """
     path = instances.locate("layouts", str(name_or_path))
     source = str(path)
@@ -100,7 +101,7 @@ def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layou
 
 
 def split_factors(overrides: Sequence[Override]) -> tuple[list[Override], list[Override]]:
-    """Return the overrides of layout parameters, and those of `FACTORS`, which are applied last."""
+    """Split overrides into those of parameters and those in `FACTORS`, which are applied last."""
     is_factor = [path[0] in FACTORS for path, _ in overrides]
     pairs = list(zip(overrides, is_factor, strict=True))
     return [one for one, late in pairs if not late], [one for one, late in pairs if late]

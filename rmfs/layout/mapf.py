@@ -1,8 +1,8 @@
-"""Grid maps from path-finding benchmarks as layouts (Stern et al. 2019: `.map` and `.scen`).
+"""Grid maps from path-finding benchmarks (Stern et al. 2019: `.map`) as layouts.
 
-A free cell is a waypoint, one metre from its neighbours; undirected edges are two-way lanes. There
-are no pods and no stations: robots drive from point to point. As in these files, cells are counted
-from the top left, rows downwards; in the layout y grows upwards.
+Each free cell becomes a waypoint; two-way lanes of one metre connect it to the free cells on its
+four sides. Layouts made here have no pods and no stations: robots drive from point to point. Cells
+are counted as in the files, row by row from the top left; in the layout, y grows upwards.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ def read_map(path: Path, robots: list[int] | None = None) -> Layout:
     Parameters
     ----------
     robots
-        Cells (row times width plus column) where robots stand. Default: the first free
-        cell of each of the first ten rows that have one.
+        Numbers of the cells (row times width plus column) where robots stand. Default: the first
+        free cell of each of the first ten rows that have one.
 
     Raises
     ------
@@ -95,12 +95,15 @@ def _edges(number: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.int
 
 
 def read_cells(path: Path) -> NDArray[np.int64]:
-    """Return the waypoint of each cell of a map, -1 where it is blocked, shape (H, W)."""
+    """Return the waypoint of each cell of a map, -1 for blocked cells, shape (H, W)."""
     return cell_waypoints(_free(path))
 
 
 def cell_waypoints(free: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Return the number of each free cell, counted row by row, and -1 elsewhere, shape (H, W)."""
+    """Return the waypoint of each cell, -1 for blocked cells, shape (H, W).
+
+    Waypoints are numbered row by row.
+    """
     number = np.full(free.shape, -1, np.int64)
     number[free] = np.arange(free.sum())
     return number
@@ -109,10 +112,19 @@ def cell_waypoints(free: NDArray[np.bool_]) -> NDArray[np.int64]:
 def waypoint_at(number: NDArray[np.int64], cell: int, source: str) -> int:
     """Return the waypoint of a cell.
 
+    Parameters
+    ----------
+    number
+        Waypoint of each cell, -1 for blocked cells, shape (H, W).
+    cell
+        Number of the cell: row times width plus column.
+    source
+        Name of the file, for messages.
+
     Raises
     ------
     InputError
-        If there is no such free cell.
+        If the cell does not exist or is blocked.
     """
     if not 0 <= cell < number.size or number.flat[cell] < 0:
         raise InputError(f"{source}: cell {cell} is not a free cell of the map")

@@ -1,4 +1,4 @@
-"""The layout: waypoints, stations, elevators, pods and robots as arrays.
+"""The layout: arrays of waypoints, pods and robots, and tuples of stations and elevators.
 
 All of them are identified by index. Stations share one numbering: pick stations come first, then
 replenishment stations, then those of all other kinds.
@@ -52,7 +52,7 @@ class PickStation:
     unit_pick_s
         Time for which one unit occupies the robot, in s.
     activation
-        Position in the order in which the stations of this kind are switched on, from 1.
+        Rank of the station, from 1, in the sequence in which stations of its kind are switched on.
     """
 
     kind: ClassVar[StationKind] = PICK
@@ -90,7 +90,7 @@ class ReplenishmentStation:
 
 @dataclass(frozen=True, slots=True)
 class OtherStation:
-    """A station that is neither for picking nor replenishment; its kind defines its service."""
+    """A station neither for picking nor for replenishment; its kind defines its service."""
 
     kind: StationKind
     waypoint: int
@@ -105,11 +105,11 @@ class Elevator:
     Attributes
     ----------
     waypoints
-        Waypoints where robots board and leave, one per tier.
+        Waypoints where robots board and leave, one on each tier that the elevator serves.
     travel_s
-        Seconds for each ordered pair of these waypoints (keys: waypoint indices).
+        Duration of the ride in s, by origin and destination, which are two of these waypoints.
     queues
-        Waiting places per boarding waypoint, nearest first; the first is the waypoint itself.
+        Waiting places by boarding waypoint, nearest first; the first is the waypoint itself.
     """
 
     waypoints: tuple[int, ...]
@@ -194,12 +194,12 @@ class Layout:
 
     @property
     def stations(self) -> tuple[PickStation | ReplenishmentStation | OtherStation, ...]:
-        """All stations in their common numbering: pick stations first."""
+        """All stations in the order of their common numbering: pick stations first."""
         return (*self.pick_stations, *self.replenishment_stations, *self.other_stations)
 
     @property
     def other_kinds(self) -> tuple[StationKind, ...]:
-        """The kinds of stations other than pick and replenishment stations, in order."""
+        """The kinds of the stations in `other_stations`, each once, in order of occurrence."""
         return tuple({station.kind.name: station.kind for station in self.other_stations}.values())
 
     @property

@@ -55,11 +55,11 @@ class GraphMeasures:
     ----------
     to_station_mean_m, to_station_max_m
         Length in m of the shortest way from a storage location to the nearest pick station, mean
-        and maximum over the storage locations that have such a way. Ways may lead through any
-        waypoint; elevator rides count as 0 m. None if there is no such storage location.
+        and maximum over the storage locations that have such a way; None if there are no such
+        locations. Ways may lead through any waypoint; elevator rides count as 0 m.
     bottlenecks
-        Number of waypoints outside queue zones whose closure alone would cut the floor into
-        unconnected parts: the articulation points of the undirected graph without queue zones.
+        Number of articulation points of the undirected graph without queue zones: closing any
+        one of these waypoints would separate others that were connected.
     """
 
     to_station_mean_m: float | None

@@ -2,8 +2,9 @@
 
 The aisles of an explicit layout cannot be lengthened, but its robots and stations can be changed.
 Keys that are also layout parameters mean the same as these parameters. The other keys are `FACTORS`
-(the shares of stations that are kept, and the number of robots per pick station); they are meant as
-factors of experiments and also apply to generated and drawn layouts.
+(the shares of pick and replenishment stations that are kept, and the number of robots per pick
+station); they are meant as factors of experiments and also apply to layouts that are generated or
+drawn as text, and to grid maps with stations.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ RAWSim-O."""
 
 
 class ExplicitOverrides(Strict):
-    """The values that can be overridden in an explicit layout; missing keys change nothing."""
+    """The values that can be overridden in an explicit layout; None leaves a value as it is."""
 
     robots: Count | None = None
     order_slots: Count | None = None
@@ -68,17 +69,18 @@ def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source:
     Parameters
     ----------
     overrides
-        (path, value) pairs. `robots` is the number of robots per tier. If it or
-        `robots_per_pick_station` is given, the positions of robots are redrawn on road waypoints.
-        If only a share of the stations of a kind is kept, those that are switched on first remain;
-        their number is rounded down, but is at least one.
+        Pairs of a key, as a list of its parts, and its new value, such as `(["robots"], 16)`.
+        `robots` is the number of robots per tier. If it or `robots_per_pick_station` is given, the
+        robots get new positions, drawn from the road waypoints. If only a share of the stations of
+        a kind is kept, those that are switched on first remain; their number is rounded down, but
+        is at least one.
     source
         Name of the file, for messages.
 
     Raises
     ------
     InputError
-        If a key cannot be overridden on an explicit layout, or a value is wrong.
+        If a key cannot be overridden in an explicit layout, or a value is wrong.
     """
     if not overrides:
         return layout

@@ -1,8 +1,8 @@
-"""The parameters of the default layout, as in a `rmfs-layout/1` file.
+"""The parameters of a generated layout, as in a `rmfs-layout/1` file.
 
-Names and default values follow the layout parameters of RAWSim-O (RAWSim-O paper, section 3.1.1;
-its file format .xlayo), in plain words and with the unit as suffix. Parameters are explained only
-by their `Field` descriptions, which `rmfs layout new` writes as comments.
+The parameters and their default values follow RAWSim-O (section 3.1.1 of the paper on RAWSim-O, and
+the file format .xlayo); the names are in plain words, with the unit as suffix. Parameters are
+explained only by their `Field` descriptions, which `rmfs layout new` writes as comments.
 """
 
 from __future__ import annotations
@@ -44,7 +44,8 @@ class OtherStations(PerSide):
 
     within: Amount = Field(0, description="number within the storage area of a tier")
     kind: str = Field(
-        description="class: module:Class, path/to/file.py:Class, or a registered name"
+        description="class of the stations, as `module:Class`, `path/to/file.py:Class` or a "
+        "registered name such as `charger`"
     )
     parameters: dict[str, Any] = Field(default_factory=dict, description="parameters of the class")
 
@@ -52,8 +53,8 @@ class OtherStations(PerSide):
 class LayoutParameters(Strict):
     """Parameters of a generated layout.
 
-    All errors are reported together: every invalid value, and every violated condition between
-    values that are valid individually.
+    All errors are reported together: every invalid value and, among the valid values, every
+    violated condition that involves several of them.
     """
 
     format: Literal["rmfs-layout/1"] = Field("rmfs-layout/1", description="version of this format")

@@ -58,8 +58,8 @@ def draw(
 
     Pick stations are red, replenishment stations yellow, elevators purple and robots green;
     stations of other kinds have their own colours. Storage locations are blue squares, dark where a
-    pod stands. Queue zones are dotted, and the hallway between storage area and stations is dashed.
-    Tiers are drawn side by side.
+    pod stands. Queue zones have a dotted outline, and the hallway (the area between storage area
+    and queues) has a dashed one. Tiers are drawn side by side.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def draw(
     arrows
         Whether to draw the direction of one-way edges.
     pods, robots
-        Whether to show their initial positions.
+        Whether to show the pods and the robots, at their initial positions.
     legend
         Whether to add a legend of the colours and lines below the figure.
     """
@@ -95,7 +95,7 @@ def save_picture(layout: Layout, path: Path, *, arrows: bool = False) -> None:
     Raises
     ------
     InputError
-        If the suffix is not supported or the file cannot be written.
+        If the suffix of `path` is not supported or the file cannot be written.
     """
     suffix = path.suffix.lower()
     if suffix not in FORMATS:

@@ -1,4 +1,4 @@
-"""Reports all errors in a file in one line."""
+"""Reports the errors found in a file, in a message of one line."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ def stop_if_any(problems: list[str], source: object) -> None:
     Parameters
     ----------
     source
-        Name of the file.
+        Name of the file that contains the errors.
 
     Raises
     ------
     InputError
-        One line with the first errors and the number of the rest.
+        If `problems` is not empty; the message is one line with the first ten errors and the number
+        of the rest.
     """
     if problems:
         more = len(problems) - MOST_PROBLEMS

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def to_toml(parameters: LayoutParameters) -> str:
-    """Return a file with every parameter, its value, unit and meaning."""
+    """Return the text of a layout file, with meanings and units of parameters in comments."""
     plain, tables = [], []
     for key, field in type(parameters).model_fields.items():
         value = getattr(parameters, key)

@@ -1,4 +1,4 @@
-"""Value types shared by layout files."""
+"""Types of values, shared by the formats of layout files."""
 
 from __future__ import annotations
 
@@ -25,6 +25,9 @@ Some = Annotated[int, Field(ge=1, le=100_000)]
 
 
 class Strict(Model):
-    """A table whose numbers are finite and written as numbers: "16" and true are not accepted."""
+    """A table of a layout file, in which numbers must be finite and written as numbers.
+
+    For example, neither "16" nor true is accepted as a number.
+    """
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)

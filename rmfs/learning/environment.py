@@ -35,15 +35,17 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     """An environment in which an episode is a run and a step is a decision of the chosen problems.
 
     Actions 0 to k - 1 choose one of the k best candidates (possible answers), in order of their
-    ranking. Action k declines, that is, chooses none of them. A question of POA, ROA, RPS, SA, MM,
-    CA or TA (a turn) can be answered by several decisions, one per step, until the agent declines.
-    With `rule`, action k + 1 gives the answer of the problem's controller (the installed rule).
-    Questions with only one possible action are skipped. An impossible action sets
-    `info["invalid"]`. It counts as declining or, where declining is impossible, as action 0.
+    ranking. Action k declines, that is, chooses none of them. With `rule`, action k + 1 gives the
+    answer of the problem's controller (the installed rule). A question of POA, ROA, RPS, SA, MM, CA
+    or TA can be answered by several decisions, one per step, until the agent declines. If only one
+    of the actions 0 to k is possible, it is carried out without a step (unless, with `rule`, there
+    are no candidates, but the rule has an answer). An impossible action sets `info["invalid"]` and
+    counts as declining or, where declining is impossible, as action 0.
 
     An observation is a dictionary with the arrays `global`, shape (G,), `candidates`, shape (k, F),
     and `action_mask`; if `observation` is `flat`, it is one vector, the first two concatenated. The
-    attributes `observing.global_features` and `observing.features` describe the G and F features.
+    attribute `observing.global_features` describes the G features in `global`, and
+    `observing.features` the F features of each candidate.
 
     An episode ends with the run. Since the warehouse would continue, the episode is `truncated`,
     not `terminated`; `info["footprint"]` then contains the measures of the run. The time between
@@ -53,11 +55,11 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     Parameters
     ----------
     layout, scenario, controllers, set
-        As for `rmfs.Simulation`. The controllers decide all other problems.
+        As for `rmfs.Simulation`. The controllers decide the problems that the agent does not.
     problems
         The problems that the agent decides, such as `["ta", "pps"]`.
     candidates
-        Number k of candidates offered in each step.
+        Maximum number k of candidates offered in a step.
     rankings
         Weights of features for ranking the candidates, by kind of question. For kinds not given,
         those of `rmfs.control.features.RANKINGS` apply.
@@ -138,7 +140,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
 
     @property
     def options(self) -> Options | None:
-        """The question and its best candidates; None at the end of the run."""
+        """The current question with its best candidates; None if there is no question."""
         return self._options
 
     def action_masks(self) -> NDArray[np.bool_]:
@@ -195,9 +197,9 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def advised(self) -> int:
         """Return the action that agrees with the installed rule; requires `rule`.
 
-        If the rule would choose a candidate that is offered, this is the action of the candidate.
-        If the rule would decline, it is action k. Otherwise, it is action k + 1, which follows the
-        rule.
+        If the rule would choose one of the candidates offered, the action that chooses this
+        candidate is returned; if the rule would decline, action k; and otherwise action k + 1,
+        which follows the rule.
         """
         options = self._options
         if options is None or not self._with_rule:

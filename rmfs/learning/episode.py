@@ -41,8 +41,8 @@ class Episode(Simulation):
 class Episodes:
     """Creates episodes of one warehouse; files are read and the layout is checked only once.
 
-    From the second use of a seed on, its episodes are copies of a run that was kept in the state
-    before its first event.
+    When a seed is used for the second time, the run is kept in the state before its first event;
+    this episode and later ones with the seed are copies of the run.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Episodes:
         reward_of(reward)  # reports errors early
 
     def begin(self, seed: int) -> Episode:
-        """Return a run with the given seed that has not started yet."""
+        """Return a run with the given seed, in the state before its first event."""
         if seed in self._kept:
             return self._kept[seed].fork()
         episode = self._made(seed)

@@ -1,4 +1,4 @@
-"""Observations of a policy: global features, and the k best candidates of a question."""
+"""Observations for a policy: global features, and the k best candidates of a question."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ GLOBAL_FEATURES: tuple[Feature, ...] = (
     Feature("time_left", "share", 1.0, "remaining share of the run"),
     Feature("backlog_orders", "orders", 100.0, "orders waiting for a station"),
     Feature("waiting_bundles", "bundles", 100.0, "bundles without station or pod"),
-    Feature("free_slots", "share", 1.0, "slots of active pick stations without an order"),
+    Feature("free_slots", "share", 1.0, "order slots of active pick stations that are free"),
     Feature("open_units", "units per station", 20.0, "units for which no pod is under way"),
     Feature("asking_robots", "share", 1.0, "robots that need a task"),
     Feature("resting_robots", "share", 1.0, "robots at rest"),
     Feature("loaded_robots", "share", 1.0, "robots with a pod"),
-    Feature("stored_share", "share", 1.0, "space of all pods in use"),
+    Feature("stored_share", "share", 1.0, "space of all pods that is in use"),
 )
 """Features of the whole warehouse. In observations, a one-hot encoding of the kind of question
 follows."""
@@ -59,7 +59,8 @@ class Options(NamedTuple):
         Scaled features of these candidates, shape (k, F); if there are fewer than k, the
         remaining rows are zero.
     mask
-        Which actions are possible, shape (k + 1,); the last action declines.
+        Which actions are possible, shape (k + 1,): action i chooses the candidate in `rows[i]`, and
+        the last action declines.
     """
 
     decision: Decision
@@ -86,7 +87,7 @@ class Observing:
     problems
         The problems that the policy decides.
     candidates
-        Number k of candidates offered.
+        Maximum number k of candidates offered.
     rankings
         Weights of features for ranking the candidates, by kind of question. For kinds not given,
         those of `rmfs.control.features.RANKINGS` apply.
@@ -96,14 +97,15 @@ class Observing:
     kinds
         Kinds of question that may be asked.
     features
-        Features of each candidate, in order of the columns of an observation.
+        Descriptions of the features of a candidate, in order of the columns of `Options.features`.
     global_features
-        Features of the warehouse and of the question, in order of the elements of an observation.
+        Descriptions of the features of warehouse and question, in order of the elements of the
+        vector that `globals_of` returns.
 
     Raises
     ------
     InputError
-        If `candidates` is less than 1, or a problem, kind of question or column does not exist.
+        If `candidates` is less than 1, or a problem, kind of question or feature does not exist.
     """
 
     def __init__(
@@ -142,7 +144,7 @@ class Observing:
         Parameters
         ----------
         may_move
-            Whether the task of moving an idle pod is offered in turns of TA.
+            Whether the candidates of TA include the task of moving an idle pod.
         """
         kind = kind_of(decision)
         if kind == "ta" and not may_move and not has_tasks(decision.view):
@@ -203,7 +205,7 @@ class Observing:
 
 
 def kind_of(decision: Decision) -> str:
-    """Return the kind of a question; the kind of a turn is the name of its problem."""
+    """Return `decision.kind`, or the name of the problem if that kind is `turn`."""
     return decision.problem.value if decision.kind == "turn" else decision.kind
 
 

@@ -104,7 +104,7 @@ class Distance(Reward):
         self._traffic = run.traffic
 
     def warmup_ended(self, time_s: float) -> None:
-        """Include the distance so far, since the traffic model begins to count from 0 again."""
+        """Count the distance so far, because the traffic model will now start again from 0."""
         self._catch_up()
         self._known_m = 0.0
 
@@ -159,7 +159,7 @@ def reward_of(wanted: Wanted) -> Reward:
     Raises
     ------
     InputError
-        If there is no such reward.
+        If there is no such reward, or no reward is named.
     """
     if isinstance(wanted, (str, type)):
         return _one(wanted)
@@ -169,7 +169,7 @@ def reward_of(wanted: Wanted) -> Reward:
 
 
 def observers_of(reward: Reward) -> list[Observer]:
-    """Return the observers of a run for this reward: its parts if it is weighted, else itself."""
+    """Return what must observe the run: the parts of a weighted reward, or the reward itself."""
     return [part for part, _ in reward.parts] if isinstance(reward, Weighted) else [reward]
 
 

@@ -41,15 +41,15 @@ _TURN = Question(Problem.TA, "turn")
 class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     """Task allocation with robots as agents; controllers decide everything else.
 
-    All robots are agents at all times. A step is a turn of TA: robots that need a task, or are at
-    rest, choose what to do, in order of their numbers; the others can only wait. Let S be the
-    number of pick and replenishment stations. Action 0 waits; actions 1 to S work for a station
+    All robots are agents at all times. A step is a turn of TA, in which the robots that need a task
+    or are at rest choose what to do, in order of their numbers; the others can only wait. Let S be
+    the number of pick and replenishment stations. Action 0 waits; actions 1 to S work for a station
     (PPS chooses the pod); S + 1 stores the pod (PSA chooses where); S + 2 moves an idle pod
     (repositioning chooses which); and S + 3 rests. An action that has become impossible, because a
     robot with a lower number took the work, counts as waiting.
 
     An observation consists of `observation`, shape (3 S + 4,), and `action_mask`. The elements of
-    the vector are, in this order: for each station, the estimated travel time there in units of
+    `observation` are, in this order: for each station, the estimated travel time to it in units of
     30 s; for each station, the units (at replenishment stations, the pods with waiting bundles) for
     which no robot is under way, divided by 10; for each station, the number of robots working for
     it, divided by 5; 1 if the robot can choose an action; 1 if it carries a pod; the share of the

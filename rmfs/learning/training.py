@@ -116,7 +116,7 @@ class Task:
         return ControllerSettings("linear", told, choices)
 
     def worth(self, weights: NDArray[np.float64], seed: int) -> float:
-        """Simulate one run and return its objective; a column that is not finite counts as 0."""
+        """Simulate one run and return its objective; a value that is not finite counts as 0."""
         given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", IdleRuleWarning)  # some weight vectors are bad
@@ -140,8 +140,8 @@ class Trained:
         Mean objective over the training seeds, with the trained and with the default weights.
     history
         One row per generation: its number (`generation`), the best and the mean value of its
-        vectors (`best`, `mean`), and the number of runs and the wall time in s up to its end
-        (`runs`, `wall_s`).
+        vectors (`best`, `mean`), the number of runs in all generations so far (`runs`), and the
+        wall time in s since the start of training (`wall_s`).
     """
 
     settings: ControllerSettings
@@ -223,7 +223,7 @@ def train(
 
 
 def named(trained: Trained, name: str, description: str) -> ControllerSettings:
-    """Return the trained controllers with another name and description."""
+    """Return the trained controllers with the given name and description."""
     return replace(trained.settings, name=name, description=description)
 
 

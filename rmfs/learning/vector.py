@@ -25,16 +25,17 @@ TOLD = ("action_mask", "elapsed_s", "now_s", "invalid")
 class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     """Several `DecisionEnv` in worker processes, with observations in shared memory.
 
-    Environments are divided among the processes, and `step` waits for the slowest process. The time
-    needed to simulate up to the next decision varies greatly. With 8 or more environments per
-    process, the differences between processes are small.
+    Environments are divided among the processes, and `step` waits for the slowest process. The
+    computing time up to the next decision varies greatly between environments; with 8 or more
+    environments per process, these differences average out.
 
-    The step after the last one of an episode starts the next episode, whatever its action, with
+    The step after the last one of an episode ignores its action, starts the next episode and has
     reward 0 (Gymnasium's mode `NEXT_STEP`). `info` contains the arrays `elapsed_s`, `now_s`,
-    `invalid` and `kind` (one of `kinds`), each of shape (N,), and `action_mask`, shape (N,
-    actions). If episodes have just ended, it also contains their footprints in `footprint`, with
-    the mask `_footprint`. `reset(seed=s)` gives environment i the seed s + i, so that it behaves
-    like a `DecisionEnv` with that seed.
+    `invalid` and `kind` (one of `kinds`, or empty at the end of an episode), each of shape (N,),
+    and `action_mask`, shape (N, actions). If episodes have just ended, `info` also contains their
+    footprints in the array `footprint`; the mask `_footprint` tells for which environments.
+    `reset(seed=s)` gives environment i the seed s + i, so that it behaves like a `DecisionEnv` with
+    that seed.
 
     Parameters
     ----------
@@ -101,7 +102,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Make a decision in every environment."""
+        """Make a decision in every environment, or start its next episode."""
         board = self._board.arrays
         board["action"][:] = actions
         for pipe in self._pipes:
@@ -122,7 +123,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
 
     @property
     def busy_s(self) -> NDArray[np.float64]:
-        """Return the processor time of each process for the last step, shape (workers,)."""
+        """Return the processor time of each process for the last step in s, shape (workers,)."""
         return self._board.arrays["busy_s"][: len(self._processes)].copy()
 
     def close_extras(self, **_: Any) -> None:

@@ -1,4 +1,4 @@
-"""Worker processes of environments; observations and actions are in shared memory."""
+"""Worker processes that run environments; observations and actions are in shared memory."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FEW_COLLECTIONS = 50_000
 """Allocations between two garbage collections: many, as runs create few reference cycles."""
 
 RUNS_KEPT = 4
-"""Runs per environment after which those that have ended are freed."""
+"""Ended runs are freed whenever this number of runs per environment has begun."""
 
 
 def shapes_of(env: DecisionEnv) -> Shapes:
@@ -53,7 +53,7 @@ class Board:
     Attributes
     ----------
     shapes
-        Shapes for one environment.
+        Shapes and types for one environment, by name, as returned by `shapes_of`.
     buffers
         Shared memory by name, from `multiprocessing.RawArray`.
     """
@@ -119,7 +119,7 @@ class Stand:
 
         Returns
         -------
-        Footprints of runs that have just ended, by row.
+        Footprints of the runs that this step has ended, by row.
         """
         board, found, before_s = self._board, {}, process_time()
         for place, env in self._envs.items():
@@ -172,7 +172,7 @@ class Stand:
 
 
 def work(given: Mapping[str, Any], board: Board, places: range, pipe: Connection) -> None:
-    """Carry out commands from a pipe until it is closed: the main function of a process."""
+    """Carry out commands from a pipe until it is closed; this is the main function of a process."""
     try:
         stand = Stand(given, board, places)
         pipe.send(("made", None))

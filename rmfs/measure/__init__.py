@@ -1,8 +1,8 @@
 """What a run reports: footprint, tables, heat maps, traces and their independent check.
 
 `Recorder` observes a run. From its logs, `tables` makes the tables that `dictionary` describes, and
-`measures` computes the footprint; `folder` writes and reads run folders; `checker` proves a trace
-safe.
+`measures` computes the footprint; `folder` writes and reads run folders; `checker` proves that the
+motion in a trace is safe.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 
 
 def footprint(run: Measured, report: CheckReport | None = None) -> pd.Series:
-    """Return the footprint of a finished run, one value per column of the data dictionary.
+    """Return the footprint of a finished run: one value per column of the table `footprint`.
 
     Parameters
     ----------
     report
-        Result of the trace checker; without it `collisions` is empty.
+        Result of the trace checker; without it, the column `collisions` is empty.
     """
     from rmfs.measure.footprints import some_tables
 
@@ -51,8 +51,8 @@ def series(run: Measured) -> pd.DataFrame:
 def decisions(run: Measured) -> pd.DataFrame:
     """Return the table `decisions` of a run.
 
-    It has one row per call in which a controller made decisions without an optimiser, and one row
-    per question to an optimiser, both in the measured time.
+    It covers the measured time and has one row per call in which a controller made decisions
+    without an optimiser, and one row per question to an optimiser.
     """
     from rmfs.measure import tables
 

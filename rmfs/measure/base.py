@@ -1,4 +1,4 @@
-"""The base class of measures, which declare, observe and compute columns of the footprint."""
+"""The base class of measures, which observe a run and compute columns of its footprint."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Measure(Observer):
     anyway (`EndedRun.logs`, `EndedRun.tables`) overrides no callback.
 
     A run can be copied or saved at any moment, together with its measures. Measures must therefore
-    hold plain data, not local functions or open files. The class is instantiated without arguments.
+    hold plain data, not local functions or open files. Measures are created without arguments.
 
     Attributes
     ----------

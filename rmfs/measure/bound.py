@@ -1,7 +1,7 @@
-"""The proven upper bound on the throughput of a run, computed by the optimisation package.
+"""The proven upper bound on the units picked per hour in a run, computed by `rmfs.solvers`.
 
-This module does not import `solvers`: the function is found by its name, as are controllers that
-use optimisers.
+Importing this module does not import `rmfs.solvers`: like a controller that uses an optimiser, the
+function that computes the bound is referred to by its name, and imported when it is needed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ BOUND = "rmfs.solvers.run_bound:units_per_h_bound"
 
 
 class BoundExceededWarning(UserWarning):
-    """A run exceeded the bound, which means a defect of the simulator or of the bound's proof."""
+    """A run exceeded its proven bound: there is a defect in the simulator or in the proof."""
 
 
 def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float) -> float:
@@ -41,12 +41,13 @@ def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration
 
 
 def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
-    """Return the layout with the shortest handling times that the pickers in `staff` can achieve.
+    """Return a copy of the layout whose times per unit are the shortest possible with `staff`.
 
     Returns
     -------
     Layout or None
-        The layout itself if `staff` is None; None if a handling time has no positive minimum.
+        The layout itself if `staff` is None (there are no pickers); None if the times per unit at a
+        pick station can be arbitrarily short.
     """
     if staff is None:
         return layout

@@ -32,18 +32,19 @@ class Column:
     Attributes
     ----------
     name
-        Name of the column; a suffix states the unit of a time, length, rate or share: `_s`, `_m`,
-        `_h` (per hour), `_share` (0 to 1).
+        Name of the column. Most names of times, lengths, rates and shares end with the unit: `_s`,
+        `_m`, `_per_h`, `_share` (0 to 1).
     dtype
         The pandas type of the column, one of `DTYPES`.
     unit
-        Unit in words, or empty for names and identifiers.
+        Unit as text, such as "s" or "orders"; empty for names and identifiers.
     meaning
-        Definition; empty cells are explained where they can occur.
+        Definition; if cells of the column can be empty, it states when.
     measured
         Whether its values depend on the machine, so that they are not reproducible.
     better
-        Whether more or less is better for a warehouse; neither if the column is descriptive.
+        "more" if larger values are better for a warehouse, "less" if smaller ones are, and
+        "neither" if the column is only descriptive.
     """
 
     name: str

@@ -60,7 +60,7 @@ def names(table: str) -> list[str]:
 
 
 def reproducible(table: str) -> list[str]:
-    """Return the names of the columns that are equal whenever the same run is repeated."""
+    """Return the names of a table's columns whose values do not change if a run is repeated."""
     return [column.name for column in TABLES[table] if not column.measured]
 
 
@@ -86,10 +86,11 @@ def learnt() -> list[Column]:
 
 
 def better_of(column: str) -> Better:
-    """Return which direction is better for a column of the footprint, all else being equal.
+    """Return whether "more" or "less" is better in a column of the footprint, all else being equal.
 
-    The result is "neither" for inputs, counts that are only means to an end (tasks, trips,
-    decisions), shares that may be high for good or bad reasons (busy robots), and unknown columns.
+    For numbers of robots, pods and stations, the result is "less". It is "neither" for all other
+    inputs, for counts that have no value in themselves (tasks, trips, decisions), for shares that
+    may be high for good or bad reasons (busy robots), and for unknown columns.
     """
     found = footprint_column(column)
     return NEITHER if found is None else found.better

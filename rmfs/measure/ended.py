@@ -45,7 +45,7 @@ class Measured(Protocol):
 
     @property
     def recorder(self) -> Recorder:
-        """The recorded events."""
+        """The data recorded during the run, from which its tables are made."""
 
     @property
     def measures(self) -> Sequence[Measure]:
@@ -73,11 +73,11 @@ class Recorded(Measured, Protocol):
 
     @property
     def overrides(self) -> list[tuple[list[str], Any]]:
-        """Overrides as pairs of key path and value."""
+        """Overrides, that is, changes of single parameters: pairs of key path and value."""
 
     @property
     def notes(self) -> dict[str, list[str]]:
-        """Notes on imported files of other systems."""
+        """For each input imported from files of another system, notes on the import."""
 
     @property
     def pacing(self) -> str:
@@ -120,7 +120,7 @@ class EndedRun:
     wall_s
         Wall time of the simulation in s.
     recorder
-        The recorded events, warm-up included.
+        The data recorded during the run, warm-up included.
     layout, world
         The layout, and the world as it was at the end of the run.
     report
@@ -140,7 +140,7 @@ class EndedRun:
 
     @cached_property
     def logs(self) -> Logs:
-        """The recorded events as frames."""
+        """The recorded data as frames."""
         return Logs(self.recorder)
 
     @cached_property
@@ -149,5 +149,5 @@ class EndedRun:
         return Made(self.logs)
 
     def handled(self, column: str) -> int:
-        """Return the sum of a column of counts in the table `stations`, such as `units_picked`."""
+        """Return the sum of a column of counts, such as `units_picked`, in the table `stations`."""
         return int(self.tables["stations"][column].sum())

@@ -21,18 +21,19 @@ class EnergyLog:
     """Energy drawn by robots, if the scenario models it.
 
     When a visit in which units were picked ends, the energy that the robot has drawn since the end
-    of its previous such visit is divided equally among these units. This energy includes driving,
-    waiting, storing the previous pod, and the way to a charger.
+    of its previous such visit is divided equally among the units picked. It includes the energy for
+    driving, waiting, storing the previous pod, and the way to a charger.
 
     Attributes
     ----------
     samples
-        Per minute, in J: energy drawn and energy charged by all robots since the end of the
-        warm-up, and mean and minimum energy in the batteries, nan without batteries.
+        After each minute, in J: energy drawn and energy charged by all robots since the end of the
+        warm-up, and the mean and the minimum energy in a battery, nan without batteries.
     per_order
-        Energy in J drawn for the units of each order so far, by index of the order.
+        Energy drawn for the units that have been picked for each order, in J, by index of the
+        order.
     final
-        `Traffic.energy` at the end of the run; empty if energy is not modelled.
+        What `Traffic.energy` returns at the end of the run; empty if energy is not modelled.
     batteries
         The robots' batteries, if there are any.
     """
@@ -47,12 +48,12 @@ class EnergyLog:
         self.final: dict[str, NDArray[Any]] = {}
 
     def begin(self, traffic: MotionCounts, robots: int, batteries: Batteries | None) -> None:
-        """Start counting."""
+        """Start the log; called at the start of a run if its scenario models energy."""
         self._traffic, self.batteries = traffic, batteries
         self._before = [0.0] * robots
 
     def sampled(self) -> None:
-        """Add a sample."""
+        """Add the present state to `samples`."""
         if self._traffic is not None:
             now = self._traffic.energy()
             levels = now["level_j"]
@@ -63,12 +64,12 @@ class EnergyLog:
             self.samples.append((used, charged, mean, least))
 
     def picked(self, order: int, station: int) -> None:
-        """Record that a unit of an order was picked in the present visit to a station."""
+        """Record that a unit was picked for an order during the visit in progress at a station."""
         if self._traffic is not None:
             self._units.setdefault(station, []).append(order)
 
     def left(self, station: int, robot: int) -> None:
-        """Divide the energy drawn by the robot among the units of its visit, which has ended."""
+        """Divide the energy drawn by a robot among the units picked in the visit that has ended."""
         orders = self._units.pop(station, None)
         if self._traffic is None or not orders:
             return
@@ -79,14 +80,14 @@ class EnergyLog:
             self.per_order[order] = self.per_order.get(order, 0.0) + each
 
     def ended(self) -> None:
-        """Store the totals counted by traffic."""
+        """Store the totals in `final`, at the end of the run."""
         if self._traffic is not None:
             self.final = self._traffic.energy()
             if self.batteries is None:
                 self.final["level_j"] = np.full(len(self.final["level_j"]), nan)
 
     def per_interval_wh(self, which: int) -> NDArray[np.float64]:
-        """Return the energy of all robots per minute in Wh: drawn (`which` 0) or charged (1)."""
+        """Return the energy drawn (`which` 0) or charged (1) by all robots each minute, in Wh."""
         values = [0.0, *(sample[which] for sample in self.samples)]
         wh: NDArray[np.float64] = np.diff(np.array(values)) / WH
         return wh

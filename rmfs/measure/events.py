@@ -1,4 +1,4 @@
-"""The events of a run besides motion, which a viewer replays.
+"""All events of a run except motion; the viewer replays them together with the motion.
 
 The log starts with the stock at time zero and covers warm-up and measured time, so that the state
 of every pod, order and station at any time can be reconstructed. The page on the trace format
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class Happening(IntEnum):
-    """Kinds of events; brackets list the columns that are used."""
+    """Kinds of events; the description of each kind lists in brackets the columns that it uses."""
 
     STOCK = 0
     """At time zero, units are on a pod (pod, sku, units)."""
@@ -46,7 +46,7 @@ class Happening(IntEnum):
     BUNDLE_CREATED = 6
     """A bundle arrived (order: the bundle's number, sku, units)."""
     BUNDLE_ASSIGNED = 7
-    """A bundle was assigned a pod and a station (order: the bundle's number, sku, pod, station,
+    """A bundle was assigned to a pod and a station (order: the bundle's number, sku, pod, station,
     units)."""
     BUNDLE_STORED = 8
     """A bundle went into its pod (order: the bundle's number, sku, pod, robot, station, units)."""
@@ -59,29 +59,30 @@ class Happening(IntEnum):
     CONTROLLER_EXCHANGED = 12
     """Another controller was installed (detail: problem=name)."""
     BATTERY_LEVEL = 13
-    """Level of a battery, at the start of each task and every minute after the warm-up (robot,
-    units: thousandths)."""
+    """Level of a robot's battery: at time zero, at the start of each of its tasks, and every minute
+    after the warm-up (robot, units: thousandths of the capacity)."""
     ORDER_LINE = 14
-    """An order has a line for units of a SKU (order, sku, units). With a station: the line was
-    assigned there with a part of the split order."""
+    """An order has a line for units of a SKU (order, sku, units). If a station is given, the line
+    belongs to the part of a split order that was assigned to this station."""
     ORDER_DUE = 15
     """Due time of an order (order, units: whole seconds since the start of the run)."""
     ORDER_CUT = 16
-    """Stock could not serve an order completely (order, units: those it keeps). Its new lines
-    follow as `ORDER_LINE`."""
+    """Units of an order were cut because stock could not serve them (order, units: those that the
+    order keeps). The lines that remain follow as `ORDER_LINE`."""
     ORDER_CANCELLED = 17
     """An order was cancelled because stock could not serve it (order)."""
     PART_COMPLETED = 18
     """A part of a split order left its slot (order, station)."""
     UNITS_BOUND = 19
-    """A pod is brought to a station for units of an order (order, sku, pod, robot, station, units).
-    Each pick of such a unit reduces their number by one."""
+    """Units of an order were bound to a pod that is brought to a station for them (order, sku,
+    pod, robot, station, units). Each pick of such a unit reduces the number bound by one."""
     UNITS_UNBOUND = 20
-    """A pod no longer serves units that were bound to it (columns as in `UNITS_BOUND`)."""
+    """Units that were bound to a pod were released from it (columns as in `UNITS_BOUND`)."""
 
 
 COLUMNS = ("time_us", "kind", "robot", "pod", "station", "order", "sku", "units", "detail")
-"""Columns of the log, all integers: `kind` is a `Happening`, `detail` an index or -1."""
+"""Columns of the log, all integers: `kind` is a `Happening`, `detail` an index into
+`EventLog.details` or -1."""
 
 
 ROW = Struct(f"{len(COLUMNS)}q")
@@ -90,7 +91,7 @@ ROW = Struct(f"{len(COLUMNS)}q")
 _row = ROW.pack
 
 MOST = 2**31 - 1
-"""Largest number that a column can hold in a file."""
+"""Largest number that fits into the columns of a file that have the type int32."""
 
 KINDS = [kind.name.lower().replace("_", "-") for kind in Happening]
 """The kinds as words, as they are written to files."""
@@ -112,7 +113,7 @@ class _Bound:
         self.picked: list[Unit] = []
 
     def look(self) -> tuple[Happening, dict[Unit, int]]:
-        """Return what was bound, or given back, since the last time: units of each."""
+        """Return whether units were bound or unbound since the last call, and how many of each."""
         picks = self.task.picks
         count = len(picks) - self.left
         self.left += count
@@ -141,7 +142,7 @@ class EventLog(Observer):
     Attributes
     ----------
     details
-        The texts to which the column `detail` refers.
+        The texts of the column `detail`, which contains their indices.
     """
 
     def __init__(self) -> None:
@@ -183,7 +184,7 @@ class EventLog(Observer):
                 self._add_level(time_s, robot, share)
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """Record that a robot has got a task."""
+        """Record that a robot was given a task."""
         now_us, detail = round(time_s * 1e6), self._detail(kind)
         self._rows.extend(_row(now_us, Happening.TASK, robot, -1, station, -1, -1, 0, detail))
         if self._world is not None and self._world.batteries is not None:
@@ -192,7 +193,7 @@ class EventLog(Observer):
             self.picks_changed(time_s, robot)
 
     def picks_changed(self, time_s: float, robot: int) -> None:
-        """Record units bound to the pod of a robot, or unbound from it, since the last call."""
+        """Record the units bound to a robot's pod, or unbound from it, since the last call."""
         if self._world is None:
             return
         task = self._world.robots[robot].task
@@ -263,7 +264,7 @@ class EventLog(Observer):
         self._add_bundle(bundle.created_s, Happening.BUNDLE_CREATED, bundle)
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """Record that a bundle was assigned a pod and a station."""
+        """Record that a bundle was assigned to a pod and a station."""
         self._add_bundle(bundle.assigned_s, Happening.BUNDLE_ASSIGNED, bundle)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:

@@ -1,4 +1,4 @@
-"""Run folders: written completely or not at all, and read back with clear errors."""
+"""Writing and reading run folders: a folder is written completely or not at all."""
 
 from __future__ import annotations
 
@@ -50,9 +50,10 @@ def write_run(
     report
         Result of the trace checker, for the column `collisions`.
     trace
-        Whether to write the trace, which the run must have recorded.
+        Whether to write the trace; only possible if the run has recorded one. Default False.
     inputs
-        Layout, scenario and controllers as specified by the user. Default: `run.names`.
+        Layout, scenario and controllers as specified by the user: names or paths. Default: the
+        names in `run.names`.
 
     Raises
     ------
@@ -64,7 +65,10 @@ def write_run(
 
 
 def reserved(target: Path, *, force: bool = True) -> AbstractContextManager[Path]:
-    """Return a context in which a run folder is written; see `rmfs.files.replacing_folder`.
+    """Return a context that provides a temporary folder in which to write a run.
+
+    When the context ends without an error, this folder becomes the run folder `target`; see
+    `rmfs.files.replacing_folder`.
 
     Parameters
     ----------
@@ -83,7 +87,7 @@ def fill(
     inputs: Mapping[str, str] | None = None,
     tables: Mapping[str, pd.DataFrame] | None = None,
 ) -> None:
-    """Write a run's files into an existing folder; parameters as in `write_run`.
+    """Write a run's files into an existing folder; for further parameters, see `write_run`.
 
     Parameters
     ----------
@@ -115,7 +119,7 @@ def fill(
 
 
 def write_csv(run: RunFolder) -> list[Path]:
-    """Write every table of a run folder as CSV beside its Parquet file; return the files.
+    """Write each table of a run folder as CSV beside its Parquet file; return the CSV files.
 
     Raises
     ------
@@ -164,12 +168,12 @@ class RunFolder(Results):
 
     @property
     def told(self) -> Told:
-        """The required contents of `run.json`, typed."""
+        """The entries that `run.json` must have, as attributes with checked types."""
         return Told.model_validate(self.parameters)
 
     @property
     def own_columns(self) -> list[Column]:
-        """Columns of the footprint that come from measures of the user."""
+        """Columns of the footprint that were added by the user's own measures."""
         return columns_of(self.parameters.get("measures", []))
 
     @property
@@ -184,7 +188,8 @@ class RunFolder(Results):
         Raises
         ------
         InputError
-            If the run was made without a trace, or the file is truncated or of another version.
+            If the run was made without a trace, or its file is truncated or has another version of
+            the format.
         """
         return read_motion(self.path)
 
@@ -204,8 +209,8 @@ class RunFolder(Results):
         Raises
         ------
         InputError
-            As for `trace`, and if the trace refers to robots, waypoints, pods or kinds that do not
-            exist. Gaps, jumps and impossible times are findings instead.
+            As for `trace`, and if the trace refers to robots, waypoints, pods or kinds of motion
+            that do not exist. Gaps, jumps and impossible times raise no error but are reported.
         """
         from rmfs.measure.checker import Slow, check
 
@@ -219,8 +224,9 @@ class RunFolder(Results):
         Raises
         ------
         InputError
-            If the run was made without a trace, or a file is missing, truncated, of another
-            version, or contains impossible robots, places, pods, stations, kinds or times.
+            If the run was made without a trace, or a file is missing, is truncated, has another
+            version of the format, or contains robots, places, pods, stations, kinds or times that
+            are impossible.
         """
         layout, motion, events = self.layout, self.trace, self.events
         skus = len(self.table("skus"))
@@ -229,7 +235,7 @@ class RunFolder(Results):
         return layout, motion, events
 
     def save(self, path: str | Path, *, force: bool = False) -> RunFolder:
-        """Copy the folder; see `Results.save`."""
+        """Copy the folder to `path`; see `Results.save`."""
         with reserved(Path(path), force=force) as folder:
             shutil.copytree(self.path, folder, dirs_exist_ok=True)
         return load_run(Path(path))
@@ -243,7 +249,7 @@ class RunFolder(Results):
         Raises
         ------
         InputError
-            If there is no such table, or its file is missing, corrupted or of another version.
+            If there is no such table, or its file is missing or corrupted or lacks columns.
         """
         if name not in TABLES:
             raise InputError(f"{name}: no such table; valid: {', '.join(TABLES)}")
@@ -261,7 +267,7 @@ def load_run(path: str | Path) -> RunFolder:
     Raises
     ------
     InputError
-        If it is not a run folder, or its `run.json` cannot be read, is corrupted or has another
+        If `path` is not a run folder, or its `run.json` cannot be read, is corrupted or has another
         format.
     """
     path = Path(path)

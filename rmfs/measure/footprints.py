@@ -47,14 +47,20 @@ def footprint(run: EndedRun, measures: Sequence[Measure]) -> pd.DataFrame:
 
 
 def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd.DataFrame]:
-    """Make all tables of a run, by name; the column `collisions` is empty without `report`."""
+    """Return all tables of a run by name.
+
+    In the footprint, the column `collisions` is empty without `report`.
+    """
     return some_tables(run, MAKERS, report)
 
 
 def some_tables(
     run: Measured, names: Iterable[str], report: CheckReport | None = None
 ) -> dict[str, pd.DataFrame]:
-    """Make the named tables and the footprint, whose `collisions` is empty without `report`."""
+    """Return the footprint and the tables called `names`, by name.
+
+    In the footprint, the column `collisions` is empty without `report`.
+    """
     ended = EndedRun(run, report)
     made = {"footprint": footprint(ended, run.measures)}
     return made | {name: ended.tables[name] for name in names}

@@ -1,8 +1,8 @@
 """Rows of fixed types in one growing block of memory.
 
-A long run records millions of rows. As a tuple, each would take about 200 bytes and several
-objects; a packed row takes only the bytes of its values, and columns can be extracted without
-converting single values.
+A long run records millions of rows. As a tuple, each row would take about 200 bytes and consist of
+several objects; a packed row takes only the bytes of its values, and columns can be extracted
+without converting the values one by one.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ class Log:
         self._rows += self._pack(*values)
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """Return a copy of each column, shape (rows,), with integers as int64."""
+        """Return a copy of each column, by name, shape (rows,), with integers as int64."""
         rows = np.frombuffer(self._rows, self._dtype)
         kinds = {"i": np.dtype(np.int64)}
         # a view would prevent the block from growing

@@ -7,10 +7,10 @@ from pathlib import Path
 
 
 def peak_rss_mb() -> float:
-    """Return the peak resident memory of this process, in MB (10^6 bytes), or nan.
+    """Return the peak resident memory of this process in MB (10^6 bytes); nan if unknown.
 
-    It is read from the kernel's high-water mark if available, because `getrusage` also includes the
-    process that started this one.
+    It is read from the kernel's high-water mark if available, because `getrusage` may return the
+    peak of the process that started this one.
     """
     try:
         status = Path("/proc/self/status").read_text(encoding="ascii")

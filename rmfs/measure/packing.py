@@ -1,4 +1,4 @@
-"""Recorded data of orders after the pick stations."""
+"""Recorded data of orders on their way from the pick stations to packing."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ if TYPE_CHECKING:
 
 
 class PackingLog:
-    """Parcels and totes, if the scenario has packing; empty logs otherwise.
+    """Parcels (orders on their way to packing) and their totes; empty logs without packing.
 
     Attributes
     ----------
     given
         The scenario's packing parameters; None without packing.
     parcels
-        Orders that are packed or, at the end of the run, of which at least one tote has left its
-        station; rows as in `parcel_row`.
+        Orders packed; after the end of the run, also orders that are not packed yet but of which at
+        least one tote has left its pick station. Rows as in `parcel_row`.
     totes
-        Totes of these orders; `consolidated_s` is that of the parcel.
+        Totes of these orders; `consolidated_s` is the time at which the last tote of the order
+        reached the put wall.
     held
-        Periods in which a tote could not leave its pick station, in s.
+        Periods in which a tote could not leave its pick station: begin and end in s.
     """
 
     def __init__(self) -> None:
@@ -54,7 +55,7 @@ class PackingLog:
             self.totes.add(parcel.order.index, tote.station, *times, tote.by_hand)
 
     def ended(self, time_s: float) -> None:
-        """Record the parcels that are not packed yet, and the totes that are held, at the end."""
+        """Record, at the end of the run, the parcels not packed yet and the totes still held."""
         wall = None if self._world is None else self._world.put_wall
         if wall is None:
             return

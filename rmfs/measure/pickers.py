@@ -1,4 +1,4 @@
-"""Recorded data of pickers."""
+"""Recorded data of pickers: their presence, and the units that they handled."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ class PickerLog:
     Attributes
     ----------
     staff
-        The pickers; None if the scenario has none.
+        All pickers of the scenario; None if it has none.
     units
         One row per picked unit, in order of time.
     presence
-        Periods of presence of pickers at stations, in s.
+        Periods in which a picker was at a station: begin and end in s.
     """
 
     def __init__(self) -> None:
@@ -34,7 +34,7 @@ class PickerLog:
 
     @property
     def given(self) -> Pickers | None:
-        """The scenario's parameters of pickers; None if it has none."""
+        """The parameters of pickers; None if the scenario has no pickers."""
         return None if self.staff is None else self.staff.given
 
     def begin(self, staff: Staff) -> None:
@@ -42,12 +42,12 @@ class PickerLog:
         self.staff = staff
 
     def handled(self, one: Handled) -> None:
-        """Record a unit."""
+        """Record how a unit was handled."""
         how = (one.picker, one.seconds, one.layer, one.fatigue, one.error, one.noticed)
         self.units.add(*how, one.face, one.turned)
 
     def ended(self, time_s: float) -> None:
-        """Record which pickers are present at the end."""
+        """Record the presence of the pickers who are still there at the end of the run."""
         for picker in self.staff.pickers if self.staff is not None else ():
             if picker.station >= 0:
                 self.presence.add(picker.index, picker.station, picker.since_s, time_s)

@@ -1,4 +1,4 @@
-"""Plots of a run folder, by name."""
+"""Plots of the results in a run folder, selected by name."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ FORMATS = {"png": "Software", "svg": "Date", "pdf": "CreationDate"}
 
 
 class Picture(Figure):
-    """A figure that displays itself in a notebook with any matplotlib back end."""
+    """A figure that notebooks display, whichever matplotlib back end is in use."""
 
     def _repr_png_(self) -> bytes:
         content = io.BytesIO()
@@ -49,13 +49,13 @@ class Picture(Figure):
 
 
 def picture(run: Results, what: str) -> Figure:
-    """Draw a plot of a run; the heat map has axes for each tier.
+    """Draw a plot of a run; the heat map has one subplot for each tier.
 
     Parameters
     ----------
     what
-        A name in `PICTURES` or `ALIASES`. For the heat map, a column of the table `heat` can be
-        selected, for example `heat:loaded_visits` or `heat:pick_waiting_s`.
+        A name in `PICTURES` or `ALIASES`. For the heat map, the name may be followed by a column of
+        the table `heat`, for example `heat:loaded_visits` or `heat:pick_waiting_s`.
 
     Raises
     ------
@@ -92,7 +92,8 @@ def save(run: Results, what: str, path: Path) -> None:
     Raises
     ------
     InputError
-        If the suffix is not supported, there is no such plot, or the file cannot be written.
+        If the suffix is not supported, there is no such plot, the run folder lacks the data for it,
+        or the file cannot be written.
     """
     suffix = path.suffix.lower()[1:]
     if suffix not in FORMATS:

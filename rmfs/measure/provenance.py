@@ -1,4 +1,4 @@
-"""Provenance of a run: parameters, versions, machine and hashes, for `run.json`."""
+"""The contents of `run.json`: parameters, versions, machine and hashes of a run."""
 
 from __future__ import annotations
 
@@ -121,14 +121,20 @@ def _sources(classes: Iterable[type]) -> dict[str, Any]:
 
 
 def own_measures(run: Measured) -> list[type[Measure]]:
-    """Return the measures that the user added to a run."""
+    """Return the classes of the measures that the user added to a run."""
     return [type(measure) for measure in run.measures if type(measure) not in SHIPPED]
 
 
 def source(part: str, given: str) -> dict[str, Any]:
     """Return name, file and SHA-256 of an input.
 
-    If the input did not come from a file, the name is `given`, and file and SHA-256 are None.
+    Parameters
+    ----------
+    part
+        A key of `KINDS`.
+    given
+        Name or path of the input. If it leads to no file, it is returned as the name, and file and
+        SHA-256 are None.
     """
     try:
         path = instances.locate(KINDS[part], given)
@@ -152,13 +158,13 @@ def _hash(path: Path) -> str:
 def layout_parameters(
     given: str, overrides: Sequence[tuple[list[str], Any]]
 ) -> dict[str, Any] | None:
-    """Return the parameters from which a layout was generated, after overrides, with all defaults.
+    """Return all parameters from which a layout was generated, including overrides and defaults.
 
     Returns
     -------
     dict or None
-        The parameters; None for a layout that was not generated from parameters or was given as an
-        object. Such a layout is identified by its digest.
+        The parameters; None for a layout that was not generated from parameters or was given as a
+        Python object. `run.json` identifies such a layout by its digest.
 
     Raises
     ------
@@ -204,8 +210,8 @@ def commit() -> dict[str, Any]:
     """Return the commit of the checkout that this code runs from, and whether it is modified.
 
     Changes in `results` are ignored, so that the code does not count as modified once a table has
-    been published. If rmfs is installed from a wheel, both values are None, even if the environment
-    lies in a repository.
+    been published. If rmfs is installed from a wheel, both values are None, even if the virtual
+    environment lies in a repository.
     """
     here = Path(__file__)
     head = _git(here.parent, "rev-parse", "HEAD")
@@ -232,7 +238,7 @@ def _git(folder: Path, *arguments: str) -> str | None:
 
 
 def machine() -> dict[str, Any]:
-    """Return the properties of this machine on which wall times and memory depend."""
+    """Return those properties of this machine that affect wall times and memory."""
     return {
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.release()}",

@@ -1,8 +1,8 @@
 """The observer that records a run.
 
-It only appends rows to logs during the run; the tables are made afterwards (`tables`). Events
-before the end of the warm-up stay in the logs, because work in progress carries over; the tables
-exclude them.
+During the run, it only appends rows to logs; `rmfs.measure.tables` makes the tables afterwards. The
+logs also cover the warm-up, because work that starts in it may end in the measured time; most
+tables cover only the measured time.
 """
 
 from __future__ import annotations
@@ -46,28 +46,30 @@ class Recorder(Observer):
     start_s, end_s
         Start and end of the measured time, in s since the start of the run.
     order_stream, bundle_stream
-        The orders and the bundles read from a file; None if the scenario names no such file.
+        The orders, or bundles, that were read from a file; None if the scenario draws them.
     units
         Picked units.
     lines
-        Finished lines, with the robot that brought the last unit, and when this unit was handled.
+        Finished order lines: `time_s` is when the pick of the last unit started, `end_s` when its
+        handling ended, and `robot` brought its pod.
     orders
         Completed and cancelled orders; rows as in `order_row`.
     open_orders
-        Orders neither completed nor cancelled, by index.
+        Orders neither completed nor cancelled, whether assigned to a station or not, by index.
     bundles
-        Stored bundles; rows as in `bundle_row`, followed by the robot.
+        Stored bundles; rows as in `bundle_row`, with the robot as additional last column.
     open_bundles
         Bundles not yet stored, by index.
     visits
-        Visits of pods to stations; `end_s` is nan for visits still in progress at the end.
+        Visits to stations; `pod` is -1 if the robot carried none, and `end_s` is nan if the visit
+        was still in progress at the end of the run.
     busy
-        Periods in which stations handled something.
+        Periods in which stations were busy with a unit, a bundle or a robot.
     tasks
         Tasks started; `kind` is an index into `TASKS`, or a larger number for visits to stations
         other than pick and replenishment stations.
     lifts
-        Liftings of pods.
+        Lifts of pods.
     calls
         Calls in which a controller made decisions itself, without an optimiser; `problem` is an
         index into `problems`.
@@ -78,25 +80,25 @@ class Recorder(Observer):
     questions
         Questions to optimisers, in order.
     solutions
-        Their solutions as text, by number of the question.
+        Solutions that optimisers found, as text, by number of the question.
     by_rule
         For each decision problem, number of decisions since the warm-up that controllers with
         optimisers made by their own rule.
     switches
-        Stations switched on or off.
+        Events at which a station was switched on or off.
     early_trips
         Trips that ended before the measured time.
     samples
-        Per minute: time (s), and the fleet's totals of distance and times since the end of the
-        warm-up.
+        For each minute of the measured time: when it ended (s), and the fleet's distances (m) and
+        times in each state (s), as totals since the end of the warm-up.
     plans
         Searches for plans of trips; empty if plans take no simulated time.
     energy
-        Energy drawn by robots.
+        Energy drawn and charged by robots.
     packing
-        Totes that have left the pick stations, and the orders (parcels) packed from them.
+        Totes that have left the pick stations, and the orders (parcels) to which they belong.
     pickers
-        Pickers at the pick stations.
+        Presence of pickers at the pick stations, and the units that they handled.
     charge_kinds
         Values of `kind` in `tasks` for tasks in which robots charge.
     """
@@ -165,7 +167,7 @@ class Recorder(Observer):
         return self.end_s - self.start_s
 
     def run_started(self, run: Observed) -> None:
-        """Keep references to the world and the traffic."""
+        """Keep references to the parts of the run, and start the logs that the scenario needs."""
         self.layout, self.world, self.traffic = run.layout, run.world, run.traffic
         self.order_stream, self.bundle_stream = run.order_stream, run.bundle_stream
         self._disturbances = run.disturbances
@@ -190,7 +192,7 @@ class Recorder(Observer):
         self._before = self._order_counts()
 
     def run_ended(self, time_s: float) -> None:
-        """Store the totals counted by `traffic`, and record what is still in progress."""
+        """Store what `traffic` has counted, and record what is still in progress."""
         self.end_s = time_s
         if not self.samples or self.samples[-1][0] < time_s:
             self.sampled(time_s)
@@ -282,7 +284,7 @@ class Recorder(Observer):
         del self.open_bundles[bundle.index]
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """Record that a pod is at the station."""
+        """Remember the start of the visit until it ends."""
         self._at_station[station] = (time_s, pod, robot)
 
     def visit_ended(self, time_s: float, station: int, pod: int, robot: int) -> None:
@@ -305,7 +307,7 @@ class Recorder(Observer):
         self.lifts.add(time_s, pod, robot)
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Count a call of a controller and its wall time; record it if decisions were made."""
+        """Count a call of a controller and its wall time; record the call if `decisions` > 0."""
         try:
             asked = self.asked[problem]
         except KeyError:
@@ -326,7 +328,7 @@ class Recorder(Observer):
         self.questions.append(call)
 
     def optimiser_answered(self, call: Call) -> None:
-        """Record the solution; how many of its decisions are applied is counted in `call`."""
+        """Record the solution, if any; `call` counts how many of its decisions are applied."""
         if call.solution is not None:
             self.solutions[call.number] = to_text(call.solution)
 

@@ -1,7 +1,7 @@
-"""Finds measures named by users.
+"""Finds the measures that users ask for.
 
-A measure is given as a class, as `module:Class` or `path/to/file.py:Class`, or by the name of an
-entry point in the group `rmfs.measures` of another distribution.
+A measure can be given as a class, as a reference (`module:Class` or `path/to/file.py:Class`), or
+by name if an installed distribution has an entry point of this name in the group `rmfs.measures`.
 """
 
 from __future__ import annotations
@@ -78,9 +78,10 @@ def find_all(given: Iterable[str | type[Measure]]) -> list[type[Measure]]:
 
 
 def described(measures: Iterable[type[Measure]]) -> list[dict[str, Any]]:
-    """Return descriptions of users' measures: name, reference, hash of the source, and columns.
+    """Describe users' measures, each by its name, reference, hash of the source file, and columns.
 
-    A measure defined in a notebook cannot be found again, so its reference is None.
+    The reference is None for a measure that cannot be imported elsewhere because it was defined in
+    a notebook, for example.
     """
     told = []
     for measure in measures:
@@ -101,7 +102,10 @@ def described(measures: Iterable[type[Measure]]) -> list[dict[str, Any]]:
 
 
 def columns_of(told: Sequence[dict[str, Any]]) -> list[Column]:
-    """Return the columns in the result of `described`, and register them for tables and plots."""
+    """Return the columns of the measures in `told`, the result of `described`.
+
+    The columns are also registered, so that tables and plots can describe them.
+    """
     columns = [Column.from_table(column) for one in told for column in one["columns"]]
     learn(columns)
     return columns

@@ -45,6 +45,6 @@ class Replay:
 
 
 def in_notebook() -> bool:
-    """Return whether this code runs in a notebook, which displays the value of a cell."""
+    """Return whether this code runs in a notebook, that is, in a Jupyter kernel."""
     shell = sys.modules.get("IPython")
     return shell is not None and type(shell.get_ipython()).__name__ == "ZMQInteractiveShell"

@@ -1,4 +1,4 @@
-"""Common base of finished runs and runs loaded from a folder."""
+"""Base class for the results of a run, whether it has just finished or was loaded from a folder."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Results(ABC):
         Raises
         ------
         InputError
-            If the folder exists already and `force` is False, or if it cannot be written.
+            If `path` is already a run folder and `force` is False, or if it cannot be written.
         """
 
     def summary(self) -> Summary:
@@ -75,7 +75,7 @@ class Results(ABC):
         return summarised(self.footprint)
 
     def plot(self, what: str = "throughput") -> Figure:
-        """Draw a plot: `throughput`, `heat`, `backlog`, `turnover`, `stations`, `robots`, ...
+        """Draw a plot by its name: `throughput`, `heat`, `backlog`, `turnover`, `stations`, ...
 
         Raises
         ------
@@ -95,7 +95,8 @@ class Results(ABC):
     ) -> Replay:
         """Write a page with a replay of the run, and show it; needs a recorded trace.
 
-        A notebook shows the page in a frame below the cell; elsewhere a browser opens it.
+        A notebook shows the page in a frame below the cell; elsewhere, a browser opens it unless
+        `open_browser` is False.
 
         Parameters
         ----------
@@ -109,7 +110,8 @@ class Results(ABC):
         Returns
         -------
         Replay
-            The page: `path` is its file, and the object itself can be passed to `open`.
+            The page. Its attribute `path` is the file. Functions that take a path, such as Python's
+            `open`, also take the page itself.
 
         Raises
         ------

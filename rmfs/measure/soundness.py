@@ -1,7 +1,9 @@
-"""Validates traces read from files: references to things that do not exist, and impossible times.
+"""Validates traces that were read from files.
 
-A trace file may have been written or edited by anybody. Invalid contents are reported here in one
-line; the checker then verifies the safety of the motion.
+A trace file may have been written or edited by anybody. The functions of this module raise an error
+with a message of one line if a column has the wrong type, a value refers to something that does not
+exist (such as a robot), or a time or another value is impossible. They do not verify whether the
+motion is safe: this is the task of the checker.
 """
 
 from __future__ import annotations
@@ -36,7 +38,7 @@ WORDS = ("kind", "detail")
 
 
 def require_columns(path: Path, table: Any, names: Sequence[str]) -> None:
-    """Make sure that columns have the right types, and no missing values except in `detail`.
+    """Make sure that columns have the right types and, except `detail`, no missing values.
 
     Parameters
     ----------
@@ -45,12 +47,12 @@ def require_columns(path: Path, table: Any, names: Sequence[str]) -> None:
     table
         An Arrow table.
     names
-        The columns, all of which the table contains.
+        Names of the columns to validate. The table must contain all of them.
 
     Raises
     ------
     InputError
-        If a column is invalid; the message names the first one.
+        If a column is invalid; the message names the first invalid one.
     """
     from pyarrow import types  # type: ignore[import-untyped]
 
@@ -79,12 +81,12 @@ def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int
     path
         The file, for messages.
     end_us
-        End of the run; no row may start more than `AFTER_US` later.
+        End of the run; no motion may start later than `AFTER_US` after it.
 
     Raises
     ------
     InputError
-        If a row is impossible, or a robot has no rows; the message names a row or the robot.
+        If a row is impossible, or a robot has no rows; the message names one such row or robot.
     """
     _within(
         path,
@@ -117,12 +119,19 @@ def require_events(
 ) -> None:
     """Make sure that the events in a trace are possible in the layout.
 
-    Parameters and errors are those of `require_motion`, but no event may be later than `end_us`.
-
     Parameters
     ----------
+    path
+        The file, for messages.
     skus
         Number of SKUs in the run.
+    end_us
+        End of the run; no event may be later.
+
+    Raises
+    ------
+    InputError
+        If an event is impossible, or the events are not sorted by time; the message names a row.
     """
     unknown = ~events["kind"].isin(KINDS).to_numpy()
     _refuse(path, unknown, f"kind must be one of {', '.join(KINDS)}")

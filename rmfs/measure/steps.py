@@ -36,7 +36,10 @@ class Steps:
 
     @classmethod
     def between(cls, begin_s: ArrayLike, end_s: ArrayLike) -> Steps:
-        """Return the number of open intervals over time; an end that is nan is never reached."""
+        """Return, as a function of time, how many intervals have begun and not yet ended.
+
+        An interval whose end is nan never ends.
+        """
         begins, ends = np.asarray(begin_s, np.float64), np.asarray(end_s, np.float64)
         sign = np.concatenate([np.ones(len(begins)), -np.ones(len(ends))])
         return cls(np.concatenate([begins, ends]), sign)
@@ -69,9 +72,9 @@ class Steps:
 
 
 def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
-    """Return for each time in `at_s` how many seconds before it lie within the intervals.
+    """Return the total time spent within intervals up to each time in `at_s`, in s.
 
-    The intervals must be disjoint and sorted by start.
+    The intervals last from `begin_s` to `end_s`; they must be disjoint and sorted by start.
     """
     if not len(begin_s):
         return np.zeros(len(at_s))
@@ -82,7 +85,10 @@ def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
 
 
 def counts(time_s: ArrayLike, edges_s: Floats) -> NDArray[np.int64]:
-    """Count the events in each interval (edge k, edge k + 1]; the first also includes edge 0."""
+    """Count the events at `time_s` that fall into each interval (edge k, edge k + 1].
+
+    The first interval also includes edge 0.
+    """
     times = np.sort(np.asarray(time_s, np.float64))
     below = np.searchsorted(times, edges_s, side="right")
     below[0] = np.searchsorted(times, edges_s[0], side="left")

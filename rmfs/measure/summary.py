@@ -50,7 +50,7 @@ class Summary:
     Attributes
     ----------
     title
-        Description of the simulated inputs.
+        Names of the layout, the scenario and the controllers, and the seed.
     rows
         Labels and values; those of users' measures come last.
     """
@@ -107,14 +107,14 @@ def own_columns(footprint: pd.Series) -> list[Column]:
 
 
 def figure(footprint: pd.Series, column: Column) -> tuple[str, str]:
-    """Return label and value, as text, of a column that is not one of the main figures."""
+    """Return the label and the value, both as text, of a column that a user's measure added."""
     label = f"{column.name}, {column.unit}" if column.unit else column.name
     form = "{:,.6g}" if column.is_number else "{}"
     return label, shown(footprint[column.name], column.name, form)
 
 
 def shown(value: Any, column: str, form: str) -> str:
-    """Return a figure as text (`distance_m` in km), or `-` for what was not measured."""
+    """Return the value of a column as text (`distance_m` in km); `-` if it was not measured."""
     import pandas as pd
 
     if pd.isna(value):

@@ -1,4 +1,4 @@
-"""The part of `run.json` that is required to read a run back; the rest is informational."""
+"""The entries of `run.json` that are checked when a run is loaded; the file has others."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class _Told(pydantic.BaseModel):
 
 
 class Source(_Told):
-    """An input, by name; its digest, file and parameters are in keys that are not read back."""
+    """The layout, scenario or controllers of a run; only the name is checked."""
 
     name: str
 
@@ -48,12 +48,13 @@ class OwnMeasure(_Told):
 
 
 class Told(_Told):
-    """The required contents of `run.json`.
+    """The entries of `run.json` that are checked; those without a default are required.
 
     Attributes
     ----------
     slow_robots
-        Robot, start and end (us), and share of the top speed; see `rmfs.measure.checker.Slow`.
+        Periods in which a robot was slow: the robot, start and end (us), and the share of the top
+        speed to which it was limited; see `rmfs.measure.checker.Slow`.
     """
 
     layout: Source
@@ -72,7 +73,7 @@ class Told(_Told):
 
 
 def require_told(path: Path, parameters: dict[str, Any]) -> None:
-    """Make sure that a `run.json` describes a run.
+    """Check the contents of a `run.json`, given as `parameters`.
 
     Raises
     ------

@@ -1,8 +1,9 @@
-"""The files of a trace: motion, events and the layout, with format versions.
+"""The files of a trace and the versions of their formats.
 
 `trace.parquet` contains every piece of motion, `events.parquet` all other events, and `layout.json`
-the explicit layout. Together they are all that is needed to replay or check a run; the page on the
-trace format describes them.
+the explicit layout. Positions at any time can be computed from them alone; checking or replaying a
+run also needs other files of its folder, such as `run.json`. The page on the trace format describes
+the three files.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ LAYOUT = "layout.json"
 
 FORMATS = {TRACE: "rmfs-trace/2", EVENTS: "rmfs-events/2"}
 EARLIER = {EVENTS: ("rmfs-events/1",)}
-"""Older formats that can also be read; the first version of events had fewer kinds."""
+"""Older formats that can also be read; `rmfs-events/1` has fewer kinds of events."""
 _KEY = b"rmfs-format"
 
 DELTAS = ("t0_us", "t1_us", "time_us")
@@ -63,7 +64,7 @@ def write_trace(
     Raises
     ------
     OSError
-        If the folder cannot be written.
+        If a file cannot be written.
     """
     from rmfs.layout.explicit import save_json
 
@@ -96,7 +97,8 @@ def read_motion(folder: Path) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If there is no trace, or the file is truncated, of another version or not a trace.
+        If there is no trace, or its file is truncated, has another version of the format, lacks
+        columns, or is not a trace.
     """
     return _read(folder / TRACE)
 
@@ -107,7 +109,7 @@ def read_events(folder: Path) -> pd.DataFrame:
 
 
 def read_layout(folder: Path) -> Layout:
-    """Read the layout of a run; raises the same errors as `read_motion`."""
+    """Read the layout of a run; raises `InputError` if its file is missing or invalid."""
     from rmfs.layout.explicit import read_json
 
     if not (folder / LAYOUT).is_file():

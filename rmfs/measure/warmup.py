@@ -16,14 +16,16 @@ BATCH = 5
 def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
     """Return the number of initial observations to drop, by the marginal standard error rule.
 
-    Of the batch means Z_1 ... Z_n the first d are dropped, where d <= n / 2 minimises
-    sum over j > d of (Z_j - mean)² / (n - d)², with the mean of these Z_j (White 1997; MSER-5 with
-    batches of five).
+    Of the batch means Z_1 ... Z_n, the first d are dropped, where d <= n / 2 minimises
+    V / (n - d)². V is the sum of (Z_j - m)² over all j > d, and m is the mean of these Z_j (White
+    1997). With batches of five, the rule is called MSER-5.
 
     Parameters
     ----------
     values
         Equidistant observations; an incomplete batch at the end is ignored.
+    batch
+        Number of observations per batch.
 
     Returns
     -------
@@ -45,8 +47,9 @@ def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
 def welch(values: ArrayLike, window: int) -> NDArray[np.float64]:
     """Return the moving average of Welch's method.
 
-    Observation i is averaged with `window` neighbours on either side, or with i on either side near
-    the start; the last `window` observations have no average.
+    Observation i, counted from 0, is averaged with its `window` neighbours on either side or, if
+    i < `window`, with its i neighbours on either side. For the last `window` observations, no
+    average is returned.
 
     Raises
     ------
@@ -65,12 +68,12 @@ def welch(values: ArrayLike, window: int) -> NDArray[np.float64]:
 
 
 def settled(smooth: ArrayLike, tolerance: float = 0.05) -> int | None:
-    """Return the observation from which a smoothed series stays near its level.
+    """Return the index from which a smoothed series stays near the mean of its second half.
 
     Parameters
     ----------
     tolerance
-        Largest permitted deviation from the mean of the second half, as a share of that mean.
+        Largest permitted deviation from that mean, as a share of it.
 
     Returns
     -------

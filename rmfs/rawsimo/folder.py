@@ -1,8 +1,9 @@
-"""Import of one file or a folder of RAWSim-O's files.
+"""Import of a file of RAWSim-O, or of all such files in a folder.
 
-Layouts, scenarios, controllers and SKU sets go into folders of these names, which keep the
-subfolders of the source. The file `import.md` lists for each file what it was, and either what was
-left out or differs, or why it was refused.
+The converted files are written to the folders `layouts`, `scenarios`, `controllers` and `skus`,
+which have the subfolders of the source. `skus` also contains lists of orders and bundles. The file
+`import.md` lists every file of the source and tells what was left out or differs in rmfs, or why
+the file was skipped or refused.
 """
 
 from __future__ import annotations
@@ -42,13 +43,14 @@ class Imported:
     source
         Path of the file, relative to the imported folder.
     kind
-        Kind of the file; empty if it is not a file of RAWSim-O.
+        Kind of the file, such as "scenario"; empty if it is not a RAWSim-O file that can be
+        imported.
     written
-        Paths of the files written for it, relative to the target folder.
+        Paths of the files to which it was converted, relative to the target folder.
     notes
         What was left out, or differs in rmfs.
     refused
-        Why it was refused; empty if it was not.
+        Why the file was refused; empty if it was not.
     """
 
     source: Path
@@ -83,13 +85,14 @@ def import_files(
     source
         The file or folder.
     target
-        The folder to create; an empty one, or one from an earlier import, is replaced.
+        The folder to create. If it exists, it must be empty or come from an earlier import; it is
+        then replaced.
     tell
-        Function called after each file, with the result for it.
+        Function called with the result for each file, as soon as the file has been handled.
 
     Returns
     -------
-    The result for each file, sorted by name.
+    The result for each file, sorted by path.
 
     Raises
     ------

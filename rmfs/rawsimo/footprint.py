@@ -1,4 +1,4 @@
-"""RAWSim-O's footprint columns and files, and their counterparts in rmfs.
+"""The footprint columns and output files of RAWSim-O, and their counterparts in rmfs.
 
 In the counterparts, text in backticks is a column of the footprint of rmfs, or `table.column` of
 another table; the rest is prose. Columns that RAWSim-O computes incorrectly are computed correctly
@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 
 class Mapped(NamedTuple):
-    """A column or a file of RAWSim-O.
+    """A footprint column or an output file of RAWSim-O, with its counterpart in rmfs.
 
     Attributes
     ----------
@@ -412,7 +412,9 @@ FILES: tuple[Mapped, ...] = (
         "table heat, by task; exact counts instead of samples, such as `heat.pick_visits`",
     ),
     Mapped("trips.heat", "table connections, grouped by waypoint and `connections.to_kind`"),
-    Mapped("storagelocationinfopolled.heat", "none: pods have no scores in rmfs; see table pods"),
+    Mapped(
+        "storagelocationinfopolled.heat", "none: scores of pods are not recorded; see table pods"
+    ),
     Mapped("output.log", "the error stream of the command"),
     Mapped("tags.csv", "none, as for Tag"),
     Mapped("exception.txt", "the error stream and the exit code"),

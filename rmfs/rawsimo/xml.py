@@ -1,9 +1,9 @@
-"""Safe reading of RAWSim-O's XML files of unknown origin.
+"""Safe reading of XML files in RAWSim-O's formats, even if their origin is unknown.
 
 The standard library's parser expands entities. A file that declares a document type is therefore
 refused at the declaration, so that it cannot define entities or cause other files to be read.
-Limits on the size of the file, the number of its elements and the length of a tag bound the memory.
-Unknown elements are noted, never silently dropped.
+Memory is bounded by limits on the size of the file, the number of its elements, and the length of
+each tag and text. Unknown elements are reported (`Unknown`), never silently dropped.
 """
 
 from __future__ import annotations
@@ -65,7 +65,8 @@ def read_root(path: Path, root: str) -> Element:
     Raises
     ------
     InputError
-        If the file is missing, too large, not XML, declares a document type or has another root.
+        If the file is missing or not XML, exceeds one of the limits, declares a document type, or
+        has another root element.
     """
     try:
         found = _parsed(path, root)
@@ -111,8 +112,8 @@ class Unknown:
     Attributes
     ----------
     names
-        Number of occurrences of each, such as `Bot.Colour` (attribute) or `Waypoints/Note`
-        (element).
+        Number of occurrences by name, for example `Bot.Colour` for an attribute and
+        `Waypoints/Note` for an element.
     """
 
     def __init__(self) -> None:

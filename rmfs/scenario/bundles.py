@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class BundleContent(NamedTuple):
-    """The content of a bundle: a number of units of one SKU, and the space units they take."""
+    """The content of a bundle: a number of units of one SKU, and the space that they take."""
 
     sku: int
     units: int
@@ -20,7 +20,7 @@ class BundleContent(NamedTuple):
 
 
 class BundleSource:
-    """Draws bundles with SKUs by popularity; bundle k comes from substream (seed, k).
+    """Draws bundles, each with a SKU drawn by popularity; bundle k is drawn from substream k.
 
     Parameters
     ----------
@@ -31,8 +31,8 @@ class BundleSource:
     return_share
         Probability that a bundle is a return of a single unit from a customer.
     path
-        Further numbers that select the substream (see `Substreams`), for bundles with a numbering
-        of their own.
+        Numbers that select a branch of the random stream (see `Substreams`), for bundles with a
+        numbering of their own.
     """
 
     def __init__(

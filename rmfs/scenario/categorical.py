@@ -1,4 +1,4 @@
-"""Draws of an index with given weights; each draw takes one uniform number."""
+"""Random draws of an index by given weights; each draw takes one uniform number."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Categorical:
     Weights are converted to integers that sum to about `SCALE`, and a uniform number in [0, 1) is
     converted to an integer below their sum. Because integers are compared, a draw is the same on
     every platform: mathematics libraries may differ in the last bits of a weight, but these vanish
-    in the rounding. Rounding changes no probability by more than about K / `SCALE`, and a positive
-    weight never becomes zero.
+    in the rounding. With K weights, rounding changes no probability by more than about K / `SCALE`,
+    and a positive weight never becomes zero.
 
     Parameters
     ----------
@@ -59,7 +59,9 @@ class Categorical:
         return bisect_right(self._cumulative, int(uniform * self._total))
 
     def pick_among(self, allowed: NDArray[np.bool_], uniform: float) -> int | None:
-        """Return an index among those allowed, with the weights renormalised over them.
+        """Return an allowed index for a number in [0, 1).
+
+        The probabilities of the allowed indices are in proportion to their weights.
 
         Parameters
         ----------

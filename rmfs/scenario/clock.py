@@ -51,13 +51,13 @@ class Cycle:
         self._gone_us = nearest_us(gone_s) % self.length_us
 
     def phase_us(self, time_us: int) -> int:
-        """Return the time within the cycle at a simulated time, both in us."""
+        """Return the time since the start of the current cycle at a simulated time, both in us."""
         return (time_us + self._gone_us) % self.length_us
 
     def times_us(self, phases_us: Sequence[int]) -> Iterator[tuple[int, int]]:
-        """Yield the times in us, 0 or later, at which a phase occurs, with the index of the phase.
+        """Yield pairs (time, index): at that time, the phase with that index occurs.
 
-        The times ascend, and the sequence never ends.
+        The times are in us, from 0 on, and ascend; the sequence never ends.
 
         Parameters
         ----------
@@ -92,14 +92,14 @@ class _Times:
 
 
 class Openings:
-    """Down periods of a scenario, in which nothing is generated.
+    """Down periods of a scenario, in which no orders or bundles arrive except in batches.
 
     Parameters
     ----------
     config
         Down periods. None: never down.
     gone_s
-        Time by which all cycles have advanced at time zero.
+        Time by which the cycle of down periods has advanced at time zero, in s.
 
     Attributes
     ----------

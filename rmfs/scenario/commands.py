@@ -103,7 +103,9 @@ def convert(
             metavar="LAYOUT", help="Format of the files: instacart, online-retail, jd or olist."
         ),
     ],
-    files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Its .csv files.")],
+    files: Annotated[
+        list[Path], typer.Argument(metavar="FILE...", help="The .csv files of the data set.")
+    ],
     out: Annotated[Path, typer.Option(help="The .csv file of orders to write.")] = Path(
         "orders.csv"
     ),
@@ -145,7 +147,7 @@ def twin(
     table: Annotated[
         Path | None,
         typer.Option(
-            help=".csv file for parameters, intervals and fit. [default: none]",
+            help=".csv file to write, with parameters, 95 % intervals and fit. [default: none]",
             show_default=False,
         ),
     ] = None,
@@ -180,7 +182,9 @@ def twin(
 @app.command()
 def export(
     scenario: Name,
-    path: Annotated[Path, typer.Argument(metavar="FILE", help="The .csv or .parquet to write.")],
+    path: Annotated[
+        Path, typer.Argument(metavar="FILE", help="The .csv or .parquet file to write.")
+    ],
     what: Annotated[
         Literal["orders", "bundles"], typer.Option(help="Which stream to write.")
     ] = "orders",
@@ -211,12 +215,13 @@ def sku_set_command(
     ],
     out: Annotated[Path | None, typer.Option(help="The .json file (rmfs-skus/1) to write.")] = None,
     picture: Annotated[
-        Path | None, typer.Option(help="The .svg, .png or .pdf with the popularity curve to write.")
+        Path | None,
+        typer.Option(help="The .svg, .png or .pdf file to write, with the popularity curve."),
     ] = None,
     settings: Settings = None,
     force: Force = False,
 ) -> None:
-    """Describe the SKUs of a scenario or file; write them, or plot their popularity."""
+    """Describe the SKUs of a scenario or file; on request, write them or plot their popularity."""
     skus = _skus(scenario, settings)
     typer.echo(f"{scenario}: {summary(skus)}, digest {skus.digest()}")
     if out is not None:

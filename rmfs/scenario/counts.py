@@ -34,7 +34,7 @@ class _Range(Block, ABC):
 
     @abstractmethod
     def probabilities(self) -> NDArray[np.float64]:
-        """Return the probability of `min`, `min` + 1, ..., `max`."""
+        """Return the probabilities of `min`, `min` + 1, ..., `max`."""
 
     def sampler(self) -> Callable[[float], int]:
         """Return the function that turns a number in [0, 1) into a count."""
@@ -48,7 +48,7 @@ class UniformCount(_Range):
     distribution: Literal["uniform"] = "uniform"
 
     def probabilities(self) -> NDArray[np.float64]:
-        """Return the probability of `min`, `min` + 1, ..., `max`."""
+        """Return the probabilities of `min`, `min` + 1, ..., `max`."""
         n = self.max - self.min + 1
         return np.full(n, 1.0 / n)
 
@@ -70,7 +70,7 @@ class NormalCount(_Range):
         return self
 
     def probabilities(self) -> NDArray[np.float64]:
-        """Return the probability of `min`, `min` + 1, ..., `max`."""
+        """Return the probabilities of `min`, `min` + 1, ..., `max`."""
         mass = self._mass()
         probabilities: NDArray[np.float64] = mass / mass.sum()
         return probabilities
@@ -110,7 +110,7 @@ class ListedCount(Block):
         return len(self.weights)
 
     def probabilities(self) -> NDArray[np.float64]:
-        """Return the probability of 1, 2, ..., `max`."""
+        """Return the probabilities of 1, 2, ..., `max`."""
         weights = np.array(self.weights)
         made: NDArray[np.float64] = weights / weights.sum()
         return made

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def bundles_to_cover(scenario: Scenario, skus: SkuSet) -> list[int]:
-    """Return the SKUs of the bundles to store first, so that stock can serve a file of orders.
+    """Return the SKUs of the bundles that the initial stock must contain for a file of orders.
 
     There is one entry per bundle. The bundles of a SKU contain at least `stock.order_cover` times
     the units of this SKU ordered in the scenario's file up to the end of the run. The largest

@@ -19,7 +19,7 @@ class Departures:
     given
         The table `orders.due` of a scenario.
     gone_s
-        Time by which the cycle has advanced at time zero.
+        Time by which the cycle of departures has advanced at time zero, in s.
     """
 
     def __init__(self, given: DepartureDue, gone_s: float) -> None:

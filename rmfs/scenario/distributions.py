@@ -1,9 +1,9 @@
-"""Distributions of real numbers in scenarios, each truncated to a range.
+"""Distributions of real numbers in scenarios; unbounded ones are truncated to a range.
 
 Every distribution is sampled by inversion: `quantile` converts a uniform number to a value, and
 truncation to [min, max] only narrows the range of that number. The values therefore follow the
-distribution *conditional* on lying within the range, as with rejection, but with one uniform number
-per value.
+distribution *conditional* on lying in [min, max], as with rejection sampling, but each takes only
+one uniform number.
 """
 
 from __future__ import annotations

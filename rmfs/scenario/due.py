@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class PriorityDue(Block):
-    """Two classes of orders: a share of urgent ones, and the rest."""
+    """Two kinds of orders, urgent and ordinary, each with an offset of its own."""
 
     mode: Literal["priority"] = "priority"
     urgent_share: Share = Field(0.2, description="share of orders that are urgent")
@@ -80,7 +80,7 @@ class ClassesDue(Block):
         return partial(_by_class, self._bounds(), tuple(one.offset_s for one in self.classes))
 
     def class_of(self, uniform: float) -> int:
-        """Return the index of the class whose offset the sampler returns for the same number."""
+        """Return the index of the class that a number in [0, 1) selects, as in `sampler`."""
         return bisect_right(self._bounds(), uniform)
 
     def _bounds(self) -> tuple[float, ...]:
@@ -89,7 +89,7 @@ class ClassesDue(Block):
 
 
 class NormalDue(Block):
-    """Offsets are normal, truncated to [min_s, max_s], in whole milliseconds."""
+    """Offsets are normal, truncated to [min_s, max_s], and rounded to whole milliseconds."""
 
     mode: Literal["normal"] = "normal"
     mean_s: Positive = Field(
@@ -119,7 +119,7 @@ class NormalDue(Block):
 
 
 class DepartureDue(Block):
-    """Orders are due at the first departure of a truck at least `lead_s` after their arrival."""
+    """Orders are due at the first truck departure that is at least `lead_s` after their arrival."""
 
     mode: Literal["departures"] = "departures"
     times_s: Annotated[tuple[NotNegative, ...], pydantic.Strict(strict=False)] = Field(
@@ -148,20 +148,23 @@ class DepartureDue(Block):
         return value
 
     def sampler(self) -> Callable[[float], float]:
-        """Return a function that always returns `lead_s`; due times are postponed afterwards."""
+        """Return a function that always returns `lead_s`.
+
+        `Departures` then postpones the due time to the next departure.
+        """
         return partial(_always, self.lead_s)
 
 
 Due = Annotated[PriorityDue | ClassesDue | NormalDue | DepartureDue, Field(discriminator="mode")]
 
 NO_CLASS = -1
-"""Class of an order in a scenario without classes (`ClassesDue`)."""
+"""Class of an order if the due times of the scenario are not `ClassesDue`."""
 
 
 def class_of(due: Due, uniform: float) -> int:
     """Return the index of an order's class, given the number from which its offset was drawn.
 
-    The result is `NO_CLASS` if the scenario has no classes.
+    The result is `NO_CLASS` unless `due` is a `ClassesDue`.
     """
     return due.class_of(uniform) if isinstance(due, ClassesDue) else NO_CLASS
 

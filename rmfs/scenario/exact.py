@@ -1,9 +1,8 @@
 """Numbers that are equal on every processor.
 
 Sums, products, quotients and square roots are rounded the same way everywhere; logarithms, error
-functions and their inverses may differ in the last bits. Any value computed once with such a
-function (a popularity, a space, a probability) is therefore rounded here to far fewer digits before
-it is used in draws. After that, only integers and comparisons are involved.
+functions and their inverses may differ in the last bits. The popularities and spaces of SKUs may be
+computed with such functions, so they are rounded here to far fewer digits before they are used.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ def space(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Round down to multiples of 1 / `SPACE_STEPS` space units, with a minimum of one step.
 
     Sums and differences of such spaces are exact, so the space used on a pod does not drift and
-    does not depend on the order of operations. Values are rounded down so that ten units of 0.1 fit
-    into one space unit.
+    does not depend on the order of operations. Values are rounded down so that ten units that take
+    0.1 space units each fit into one space unit.
     """
     return np.maximum(np.floor(values * SPACE_STEPS), 1.0) / SPACE_STEPS

@@ -33,7 +33,7 @@ def load(name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]
 def load_with_notes(
     name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]] = ()
 ) -> tuple[Scenario, list[str]]:
-    """Load a scenario, with notes from its import.
+    """Load a scenario; also return notes on the import of a file of RAWSim-O.
 
     Parameters
     ----------
@@ -45,12 +45,13 @@ def load_with_notes(
 
     Returns
     -------
-    The scenario, and notes on what an import left out or does differently.
+    The scenario, and notes on what the import left out and what differs in rmfs; for files in other
+    formats, there are no notes.
 
     Raises
     ------
     InputError
-        One line that names the file and everything wrong in it.
+        If the file cannot be read or is invalid; the message lists all errors on one line.
     """
     path = locate("scenarios", str(name_or_path))
     notes: list[str] = []

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.skus import SkuSet
 
 DRAWS_PER_LINE = 32
-"""Maximum number of draws for a line; after that, one of the SKUs that qualify is drawn."""
+"""Number of draws for a line after which the draw is limited to the SKUs that qualify."""
 
 
 class OrderContent(NamedTuple):
@@ -33,12 +33,12 @@ class OrderContent(NamedTuple):
     skus, units
         SKU and number of units of each line; all SKUs are different.
     due_offset_s
-        Time from arrival to due time, in s.
+        Time from arrival to due time, in s; with `DepartureDue`, its minimum.
     redraws
-        Number of draws rejected because earlier orders left too few units of the SKU; at most
-        `DRAWS_PER_LINE` for each line.
+        Number of draws of a SKU that were rejected because earlier orders left too few units of it;
+        at most `DRAWS_PER_LINE` for each line.
     priority
-        Index of its class; -1 unless `orders.due.mode = "classes"`.
+        Index of the order's class; -1 unless `orders.due.mode = "classes"`.
     """
 
     skus: tuple[int, ...]
@@ -55,8 +55,8 @@ class OrderSource:
     stock: two runs with the same seed get the same orders until their stock differs. If
     earlier orders leave too few units of the SKU drawn for a line, the SKU is redrawn with the next
     number of the substream; this is equivalent to a draw among the SKUs with enough units left.
-    The first draws of all lines precede all redraws, so that a shortage in one line does not affect
-    the others.
+    The numbers for the first draws of all lines precede those for redraws, so that a shortage in
+    one line does not change the numbers for the first draws of the others.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class OrderSource:
     Raises
     ------
     InputError
-        If an order may need more lines than there are SKUs.
+        If an order may have more lines than there are SKUs.
     """
 
     def __init__(
@@ -107,8 +107,7 @@ class OrderSource:
             Number k of the order, 0 or greater. Each number is used only once: if the result is
             None, the next attempt uses k + 1.
         uncommitted
-            Units of each SKU that are stored and not needed for orders that have arrived, shape
-            (K,).
+            Stored units of each SKU minus those that earlier orders still need, shape (K,).
 
         Returns
         -------

@@ -25,7 +25,7 @@ LONGEST_S = 86400.0
 
 
 class UnitTimes:
-    """Distribution of the picking time of a unit, before effects of the picker.
+    """Distribution of the picking time of a unit, without the effects of picker and pod.
 
     Parameters
     ----------
@@ -74,13 +74,13 @@ class UnitTimes:
 
 
 def learned(given: Learning | None, units: float) -> float:
-    """Return the learning factor of a picker who has picked `units` units in this run.
+    """Return the factor by which learning changes the time of a picker's next unit.
 
-    It applies to the time of the next unit.
-
-    Unit n takes the time T1 (M + (1 - M) n**-b), where T1 is the time of the first unit and b =
-    -log2(rate): Wright (1936) for M = 0, De Jong (1957) with the incompressible share M. The factor
-    is this time divided by that of unit number `standard_units`.
+    The picker has picked `units_before` units before this run and `units` units in it. By the
+    learning curve, a picker's n-th unit takes the time T1 (M + (1 - M) n**-b), where T1 is the time
+    of the first unit, M is `incompressible`, and b = -log2(`rate`): De Jong (1957), and for M = 0
+    Wright (1936). The factor is the time of the next unit, n = `units_before` + `units` + 1,
+    divided by that of unit number `standard_units`. If `given` is None, the factor is 1.
     """
     if given is None:
         return 1.0
@@ -106,13 +106,13 @@ def least_factor(given: Pickers) -> float:
 
 
 def measured_s(path: Path) -> NDArray[np.float64]:
-    """Return the times of a CSV file with a column `time_s`, in s, shape (n,).
+    """Return the column `time_s` of a CSV file: picking times in s, shape (n,).
 
     Raises
     ------
     InputError
-        If the file cannot be read, lacks the column, or contains an invalid time; the message names
-        the line.
+        If the file cannot be read, lacks the column, or contains no time or an invalid one; for an
+        invalid time, the message names the line.
     """
     try:
         text = read_bounded(path).decode("utf-8-sig")

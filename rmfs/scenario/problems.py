@@ -23,7 +23,7 @@ class Problems:
         self.count = 0
 
     def add(self, problem: str) -> None:
-        """Add an error; memory use does not grow with the number of errors."""
+        """Add an error; only the first `MOST_SHOWN` are kept, and the rest are counted."""
         self.count += 1
         if len(self._shown) < MOST_SHOWN:
             self._shown.append(problem)
@@ -34,7 +34,8 @@ class Problems:
         Raises
         ------
         InputError
-            One line with the first errors and the number of the rest.
+            If there are errors; the message is one line with the first errors and the number of
+            the rest.
         """
         if self.count:
             more = self.count - len(self._shown)

@@ -1,4 +1,4 @@
-"""Number types in scenario files, and checks of pairs that must be in order."""
+"""Types of numbers in scenario files, and a check that one number is not below another."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Number = TypeVar("Number", int, float)
 
 
 class Block(Model):
-    """A table of a scenario: numbers must be finite and written as numbers."""
+    """A table of a scenario; numbers must be finite, and text is not converted to numbers."""
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
 
@@ -28,14 +28,14 @@ class Block(Model):
 def not_below(value: Number, info: pydantic.ValidationInfo, key: str) -> Number:
     """Return `value` if it is not below the value of `key`, a field validated earlier.
 
-    To be called by the validator of a single field: unlike a validator of the whole table, it also
-    runs if other fields are wrong, so that one message lists all errors. If one of the two values
-    is wrong itself, they are not compared.
+    To be called by the validator of a single field, which, unlike a validator of the whole table,
+    also runs if other fields are wrong; one message can thus list all errors. If the value of `key`
+    is invalid itself, the two values are not compared.
 
     Raises
     ------
     ValueError
-        If `value` is less.
+        If `value` is below the value of `key`.
     """
     least = info.data.get(key)
     if least is not None and value < least:

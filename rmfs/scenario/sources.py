@@ -95,15 +95,16 @@ def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> Bundl
 
 
 def time_zero(scenario: Scenario) -> datetime | None:
-    """Return the date and time of time zero of a scenario; None if nothing in it has a date.
+    """Return the date and time of time zero of a scenario.
 
-    It is the start given in the scenario. Default: `time_of_day_s` after midnight of the day on
-    which the earliest row of the scenario's files falls. It is the same for orders and bundles.
+    This is `start`, if the scenario gives it. Otherwise, it is `time_of_day_s` after the midnight
+    before the earliest row of the files of orders and bundles; None if these files contain no
+    dates. It is the same for orders and bundles.
 
     Raises
     ------
     InputError
-        If only one of two files has a time zone.
+        If the times in one of the two files have a time zone and those in the other have none.
     """
     if scenario.start is not None:
         return datetime.fromisoformat(scenario.start)

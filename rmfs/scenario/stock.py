@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Place = Callable[[BundleContent, NDArray[np.float64]], int | None]
 
 POD_DRAWS = 32
-"""Number of pods drawn for a bundle to find one with room, before all pods are searched."""
+"""Maximum number of random pods that are tried for a bundle before all pods are searched."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class InitialStock:
         Pod, SKU and units of each of the n bundles, shape (n,).
     share
         Space that the bundles take, as a share of the capacity of all pods; less than requested
-        only if nothing more fits.
+        only if no further bundle fits.
     """
 
     pod: NDArray[np.int64]
@@ -62,27 +62,31 @@ def initial_stock(
 ) -> InitialStock:
     """Fill a share of the pods' capacity with bundles, whose SKUs are drawn by popularity.
 
-    A bundle that fits into no pod is dropped, and another one is drawn; if no bundle of any SKU
-    fits, filling ends.
+    A drawn bundle for which no pod has room left is dropped, and another one is drawn; filling
+    ends early if no pod has room for a bundle of any SKU.
 
     Parameters
     ----------
     pod_capacity
         Space units of each pod, shape (P,).
     share
-        Share of all capacity to fill, in [0, 1]; the last bundle may exceed it.
+        Share of the pods' total capacity to fill, in [0, 1]; once it is reached, no further bundle
+        is drawn.
     seed
         The run's seed.
     choose
-        Function of a bundle and the free space of each pod (P,), which returns a pod with room for
-        it; only called if some pod has room. Default: any such pod, all equally likely.
+        Function that takes a bundle and the free space of each pod, shape (P,), and returns a pod
+        with room for the bundle; only called if there is such a pod. Default: all pods with room
+        are equally likely.
     first
-        SKUs of the bundles to store before others are drawn; a SKU may occur several times.
+        The SKU of each bundle that is stored before others are drawn; a SKU may occur several
+        times.
 
     Raises
     ------
     InputError
-        If a bundle of some SKU fits into no empty pod, or one of `first` finds no room.
+        If a bundle of some SKU is larger than the largest pod, or no pod has room for a bundle of
+        `first`.
     ValueError
         If `choose` returns a pod without room for a drawn bundle; bundles of `first` are not
         checked.

@@ -1,4 +1,4 @@
-"""Random numbers for the k-th element of a stream, independent of those of other elements."""
+"""Random numbers for the k-th item, such as an order, independent of those of all other items."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ class Substreams:
     """One of the random streams derived from a seed, divided into numbered substreams.
 
     A counter-based generator (Philox) computes its numbers from a key and a counter. The key is
-    derived from the seed and the stream, and the number of the substream is part of the counter.
-    Switching to a substream therefore takes one microsecond; creating a generator would take ten.
+    derived from the seed, the stream and the path, and the number of the substream is part of the
+    counter. Switching to a substream therefore takes about one microsecond; creating a generator
+    would take about ten.
     A substream has 2**64 blocks of four numbers before it overlaps with the next.
 
     Parameters
@@ -38,10 +39,15 @@ class Substreams:
         self._counter = self._start["state"]["counter"]
 
     def at(self, ordinal: int) -> Callable[[], float]:
-        """Return a function whose k-th call returns number k of a substream, uniform in [0, 1).
+        """Return a function that returns the next number of a substream, uniform in [0, 1).
 
-        The function is valid until the next call of `at`, because all substreams share one
+        The function must not be used after the next call of `at`, because all substreams share one
         generator.
+
+        Parameters
+        ----------
+        ordinal
+            Number of the substream; its sequence starts again from the first number.
         """
         self._counter[1] = ordinal
         self._generator.state = self._start

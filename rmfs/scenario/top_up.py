@@ -1,4 +1,4 @@
-"""Topping up of a backlog, with pauses that depend on the stock level or follow a failure."""
+"""Topping up of a backlog, with pauses that depend on the stock or follow a failed attempt."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Hysteresis:
     Parameters
     ----------
     on_above, off_below
-        The two levels, `off_below` <= `on_above`; at a level itself nothing changes.
+        The two levels, `off_below` <= `on_above`; at exactly one of them, nothing changes.
     on
         State at the start.
     """
@@ -34,7 +34,7 @@ class Hysteresis:
 
 
 class _TopUp:
-    """A backlog that pauses after something could not be generated.
+    """Topping up of a backlog, with a pause after an order or bundle could not be generated.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class _TopUp:
     retry_s
         Length of the pause.
     switch
-        The switch that pauses it.
+        The switch that depends on the stock.
     """
 
     def __init__(self, capacity: float, retry_s: float, switch: Hysteresis) -> None:
@@ -76,8 +76,8 @@ class OrderTopUp(_TopUp):
     def wants(self, time_s: float, waiting: int, stored: float) -> bool:
         """Return whether an order should be generated now.
 
-        To be called after every change of stock or backlog, since a pause starts when the stock
-        falls below a level.
+        Has to be called after every change of the stock or the backlog, so that it notices whenever
+        the stock crosses one of the levels at which a pause starts or ends.
 
         Parameters
         ----------
@@ -86,7 +86,7 @@ class OrderTopUp(_TopUp):
         waiting
             Number of orders not yet assigned to a station.
         stored
-            Space units stored on all pods.
+            Space taken by the stored units of all pods, in space units.
         """
         enough = self._switch.update(stored / self._capacity) or not self._config.pause_by_stock
         return enough and waiting < self._config.orders and time_s >= self.blocked_until_s
@@ -95,7 +95,8 @@ class OrderTopUp(_TopUp):
 class BundleTopUp(_TopUp):
     """Determines when the next bundle of a constant backlog is generated.
 
-    All loads are in space units.
+    The load is the space taken by stored units, by bundles on their way into pods and by waiting
+    bundles, in space units.
 
     Parameters
     ----------
@@ -111,7 +112,9 @@ class BundleTopUp(_TopUp):
         self._config = config
 
     def wants(self, time_s: float, waiting: int, load: float) -> bool:
-        """Return whether a bundle should be generated now; to be called like `OrderTopUp.wants`.
+        """Return whether a bundle should be generated now.
+
+        Has to be called after every change of the load or the backlog, like `OrderTopUp.wants`.
 
         Parameters
         ----------
@@ -120,11 +123,19 @@ class BundleTopUp(_TopUp):
         waiting
             Number of bundles that lack a station, a pod, or both.
         load
-            Space units of stored units, bundles assigned to pods, and waiting bundles.
+            Current load (see the class).
         """
         full = self._switch.update(load / self._capacity) and self._config.pause_by_stock
         return not full and waiting < self._config.bundles and time_s >= self.blocked_until_s
 
     def accepts(self, load: float, space: float) -> bool:
-        """Return whether a bundle of this size may be added; if not, the caller calls `failed`."""
+        """Return whether the load limit admits a bundle; if not, the caller has to call `failed`.
+
+        Parameters
+        ----------
+        load
+            Load without the bundle.
+        space
+            Space units of the bundle.
+        """
         return load + space <= self._config.load_limit_share * self._capacity

@@ -1,4 +1,4 @@
-"""Orders that are coloured words."""
+"""Orders that are words of coloured letters; a letter in one colour is a SKU."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 
 class WordSource:
-    """Draws words, all equally likely, with a colour and a number of units for each letter.
+    """Draws orders that are words, all equally likely.
 
-    Order k is drawn from substream (seed, k) and depends on nothing else, in particular not on
-    stock. Equal letters of one colour form one line.
+    The colour and the number of units of each letter are drawn, too. Equal letters of one colour
+    form one line. An order depends only on the configuration, the seed, `path` and its number, in
+    particular not on stock.
 
     Parameters
     ----------
@@ -31,8 +32,8 @@ class WordSource:
     seed
         The run's seed.
     path
-        Numbers that select the substreams (see `Substreams`), for orders that are numbered
-        separately, such as those of batches.
+        Numbers that select a branch of the random stream (see `Substreams`), for orders with a
+        numbering of their own, such as those that arrive in batches.
     """
 
     def __init__(

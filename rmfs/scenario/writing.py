@@ -25,9 +25,8 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
     Parameters
     ----------
     path
-        The file NAME.toml. Of the following files, only those that the scenario needs are written,
-        beside it: NAME-skus.json, NAME-words.txt, NAME-orders.csv, NAME-bundles.csv,
-        NAME-times.csv.
+        The file NAME.toml. Further files are written beside it if the scenario needs them:
+        NAME-skus.json, NAME-words.txt, NAME-orders.csv, NAME-bundles.csv, NAME-times.csv.
 
     Returns
     -------
@@ -36,7 +35,7 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
     Raises
     ------
     InputError
-        If the name does not end in .toml, or a file cannot be read or written.
+        If `path` does not end in .toml, or a file cannot be read or written.
     """
     if path.suffix.lower() != ".toml":
         raise InputError(f"{path}: must end in .toml")

@@ -25,9 +25,9 @@ def us_at(time_s: float) -> int:
 class Agenda:
     """A heap of callbacks ordered by time, priority and serial number.
 
-    Entries with equal time are ordered by priority number, the lowest first, and then by insertion.
-    Callbacks are bound methods, or partials of these, so that a simulation can be copied and saved
-    with its future events.
+    Of entries with equal time, the one with the lowest priority number comes first; if the
+    priorities are also equal, the one that was added first. Callbacks must be bound methods, or
+    partials of these, so that a simulation can be copied and saved with its future events.
 
     Attributes
     ----------

@@ -18,19 +18,20 @@ if TYPE_CHECKING:
 
 
 class Alarms:
-    """Agenda entries of controllers that specify their own times, one per controller.
+    """Agenda entries of controllers that specify when they want to be called, one for each.
 
     Parameters
     ----------
     due
-        Called with each decision problem whose controller is due.
+        Function that is called with a decision problem at the time that its controller specified.
     outside
-        Decision problems decided outside the simulation; their rules still specify times.
+        Decision problems decided outside the simulation; their installed rules still specify when
+        decisions are requested.
 
     Attributes
     ----------
     punctual
-        Problems whose controllers specify times.
+        Problems whose controllers specify when they want to be called.
     overdue
         Problems whose controllers are due and have not been called yet.
     """
@@ -51,7 +52,7 @@ class Alarms:
         self.overdue: set[Problem] = set()
 
     def connect(self, problems: Iterable[Problem]) -> None:
-        """Determine which of the installed controllers specify times."""
+        """Determine which installed controllers specify when they want to be called."""
         self.punctual = frozenset(
             problem
             for problem in problems
@@ -59,7 +60,10 @@ class Alarms:
         )
 
     def asked(self, problem: Problem) -> None:
-        """Update after a controller was called: it may now specify another time."""
+        """Update the entry of a problem's controller after it was called.
+
+        The controller may now specify another time.
+        """
         if self.overdue:
             self.overdue.discard(problem)
         if problem in self.punctual:

@@ -22,8 +22,8 @@ class Applying:
     Parameters
     ----------
     prepare, exchange, unplug
-        Callbacks for prepared tasks, for exchanges of controllers, and for robots that must leave a
-        charger.
+        Functions that carry out the decisions `Prepare`, `Exchange` and `Unplug` of
+        `rmfs.control.decisions`.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class Applying:
         }
 
     def __call__(self, decision: Any, call: Call | None) -> None:
-        """Apply a decision; `call` is the call whose solution it comes from, if any.
+        """Apply a decision; `call` is the call to an optimiser on which it is based, if any.
 
         Raises
         ------
@@ -87,7 +87,10 @@ class Applying:
         self._events.bundle_promised(decision.bundle)
 
     def release_pod(self, decision: say.ReleasePod) -> None:
-        """Release the bundles promised to a pod; those that have a station are then assigned."""
+        """Release the bundles promised to a pod.
+
+        Bundles whose station ROA has already chosen are thereby assigned to it.
+        """
         assigned = self._world.release_bundles(decision.pod)
         self._events.bundles_released(decision.pod)
         for bundle in assigned:

@@ -19,7 +19,7 @@ class ArrayPickler(pickle.Pickler):
     Parameters
     ----------
     aside
-        Function that receives the contents of arrays; these are then not part of the pickled
+        Function that receives the contents of arrays, which are then left out of the pickled
         stream.
     """
 

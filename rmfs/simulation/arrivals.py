@@ -33,7 +33,8 @@ class ArrivalProcess:
     seed
         Seed of the run.
     wanted
-        Called at each time that the scenario specifies, so that `top_up` is called at that instant.
+        Function that is called when the next arrival may be due; it must see to it that `top_up` is
+        called at this instant.
     recorder
         Records all orders and bundles.
     """
@@ -66,13 +67,13 @@ class ArrivalProcess:
 
     @property
     def order_stream(self) -> OrderStream | None:
-        """The orders of a file; None if the scenario draws its orders."""
+        """The orders, if they come from a file; None if the scenario draws them."""
         stream = self._orders.stream
         return stream if isinstance(stream, OrderStream) else None
 
     @property
     def bundle_stream(self) -> BundleStream | None:
-        """The bundles of a file; None if the scenario draws its bundles."""
+        """The bundles, if they come from a file; None if the scenario draws them."""
         stream = self._bundles.stream
         return stream if isinstance(stream, BundleStream) else None
 
@@ -86,7 +87,7 @@ class ArrivalProcess:
         self._wake_at(min(self._orders.next_us, self._bundles.next_us))
 
     def redraw(self) -> None:
-        """Redraw the times of the next arrivals; see `Intake.redraw`."""
+        """Redraw the next arrivals after random streams were replaced; see `Intake.redraw`."""
         now_us = self._agenda.now_us
         if self._woken_us > now_us:
             self._agenda.cancel(self._wake)
@@ -142,17 +143,17 @@ class ArrivalProcess:
 
     @property
     def stored_space(self) -> float:
-        """Space units stored on all pods."""
+        """Space units taken by the units stored on all pods."""
         return self._world.inventory.stored_space
 
     @property
     def load(self) -> float:
-        """Space units taken by the units that are stored, on their way into pods, or waiting."""
+        """Space units taken by all stored units and by all bundles that are not stored yet."""
         return self._world.load
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:
-        """Available units of each SKU minus ordered units not yet bound to a pod, shape (K,)."""
+        """Stored units per SKU minus those that orders still need, shape (K,); may be negative."""
         return self._world.inventory.uncommitted
 
     @property

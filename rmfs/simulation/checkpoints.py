@@ -17,9 +17,10 @@ K = TypeVar("K", bound="Kernel")
 
 
 class Checkpoints:
-    """Runs a simulation to its end and saves it periodically; passed to `simulate` as `driver`.
+    """Runs a simulation to its end and saves it periodically.
 
-    The checkpoint file is removed at the end.
+    Pass an instance to `simulate` as `driver`. The checkpoint file is removed at the end of the
+    simulation.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ class Checkpoints:
 
 
 def resumed(path: Path, simulation: K) -> K:
-    """Resume from a checkpoint.
+    """Return the simulation saved in a checkpoint file, so that it can be continued.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class PhaseConsult:
-    """Passes TA's questions to the installed controllers; times and counts the decisions."""
+    """Passes TA's questions to the installed controllers, and keeps statistics of the decisions."""
 
     def __init__(self, world: World, controllers: ControllerSet, deciding: Deciding) -> None:
         self._world = world
@@ -100,10 +100,11 @@ class PhaseConsult:
 
 
 class OutsideConsult(PhaseConsult):
-    """Passes on those questions of TA whose problem is decided outside the simulation.
+    """Answers TA's questions in a run in which some problems are decided outside the simulation.
 
-    All other questions are answered as by `PhaseConsult`. The methods that ask for a pod, station,
-    place or move raise `Awaits` if the question must first be answered outside the simulation.
+    Questions about all other problems are answered as by `PhaseConsult`. The methods that ask for a
+    pod, station, storage location or move raise `Awaits` if the question must first be answered
+    outside the simulation.
     """
 
     def __init__(
@@ -136,7 +137,7 @@ class OutsideConsult(PhaseConsult):
         return Problem.REPOSITIONING in self._outside.problems or super().may_move()
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask for a move; None if there is none or the rule is not ready for this robot."""
+        """Ask for a move; None if there is none, or if the rule is not ready for this robot."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         question = Question(Problem.REPOSITIONING, "move", robot.index)
         if not self._outside.knows(question) and not rule.is_ready(robot):

@@ -37,7 +37,7 @@ class ControllerSet:
     Attributes
     ----------
     installed
-        The controller of each problem; the same mapping throughout the run.
+        The controller of each problem; the mapping is updated when a controller is exchanged.
     calls
         For each `Trigger`, the problems whose controllers are called after it.
     listeners
@@ -74,7 +74,7 @@ class ControllerSet:
         return self._consulted[problem]
 
     def install(self, choice: Choice) -> None:
-        """Create a controller and install it in place of the present one of its problem.
+        """Create a controller and install it in place of its problem's present controller.
 
         Raises
         ------

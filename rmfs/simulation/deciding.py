@@ -74,20 +74,21 @@ class Deciding:
     def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:
         """Apply decisions one by one, and measure the time spent on making them.
 
-        Calls can be nested: an optimiser may answer while the controller that asked it is still
-        deciding.
+        Calls of this method can be nested: an optimiser may answer while the controller that asked
+        it is still deciding.
 
         Parameters
         ----------
         given
             Iterable of decisions; the controller makes each one when it is taken from the iterable.
         answer
-            The call to an optimiser, if the decisions are based on the answer to it.
+            The call to an optimiser on whose answer the decisions are based, if there is one.
 
         Raises
         ------
         RuleError
-            If a user's rule makes an impossible decision, or any rule returned None.
+            If a user's rule makes an impossible decision, or any rule returns None instead of an
+            iterable.
         """
         apply, controller = self._apply, self._controllers[problem]
         asks_optimisers = bool(controller.optimisers)
@@ -148,9 +149,9 @@ class Deciding:
         state: RuleState,
         answer: Call | None = None,
     ) -> None:
-        """Do as `ask` does, for a rule that may be interrupted to get an answer from outside.
+        """Do as `ask` does, for a rule whose work may be interrupted by a question.
 
-        Outside means outside the simulation, where some decision problems are decided.
+        The question is about a decision problem that is decided outside the simulation.
 
         Parameters
         ----------
@@ -158,17 +159,17 @@ class Deciding:
             Function that asks the rule for decisions, or passes the answer of an optimiser on to
             it.
         outside
-            Holds the answers given so far.
+            Holds the answers that the rule's questions have got so far.
         state
             Saves and restores the state of the rule.
         answer
-            The call whose answer is passed on.
+            The call whose answer is passed on; None if the rule is asked for decisions.
 
         Raises
         ------
         Awaits
-            If a question must first be answered outside the simulation. The rule is then in its
-            state after its last decision, and must be asked again.
+            If a question must first be answered outside the simulation. The rule is then in the
+            state that it had after its last decision, and must be asked again after the answer.
         """
         controller = self._controllers[problem]
         which = -1 if answer is None else answer.number
@@ -261,15 +262,15 @@ class Deciding:
         Parameters
         ----------
         wall_ns
-            Wall time of the call in nanoseconds; it is not counted as TA's.
+            Wall time that this controller took, in nanoseconds; it is not counted as TA's.
         decided
             Whether the controller decided anything.
         call
-            The call to an optimiser, if the decision is based on the answer to it; None if the rule
-            decided.
+            The call to an optimiser on whose answer the decision is based; None if the controller's
+            own rule decided.
         modelled
-            Whether optimisers can make this kind of choice. A choice of another kind does not count
-            as a decision that the rule made in place of an optimiser.
+            Whether optimisers can make this kind of choice. If not, the choice is not counted as
+            one that the controller's own rule made in place of an optimiser.
         """
         self._nested_ns += wall_ns
         self.record(problem, wall_ns, int(decided), int(decided and call is None))
@@ -296,8 +297,8 @@ class Deciding:
         count
             Number of decisions made in it.
         by_rule
-            Number of these that are not based on the answer of an optimiser; the others are counted
-            with the question to the optimiser.
+            Number of these decisions that are not based on an optimiser's answer; those that are
+            based on an answer are counted in its `Call`.
         """
         now_s, statistics = self._world.now_s, self.statistics[problem]
         statistics.record(wall_ns, count, now_s)

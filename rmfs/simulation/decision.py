@@ -48,7 +48,7 @@ class Asking(Protocol):
 
 
 class Decision:
-    """One question to be decided outside the simulation, with methods to answer it.
+    """One decision to be made outside the simulation: a question, with methods to answer it.
 
     In POA, ROA, RPS, SA, MM, CA and TA, a question is a turn: call `answer` with one decision after
     another (see `rmfs.control.decisions`), each of which is applied immediately, and then `decline`
@@ -144,7 +144,7 @@ class Decision:
         self._apply(self.candidates[row])
 
     def decline(self) -> None:
-        """Make no further decision: end a turn, or answer TA that there is nothing to choose.
+        """Make no further decision: end a turn, or tell TA that nothing is chosen.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Converts tasks to commands for traffic, and reacts to the reports of traffic."""
+"""Converts tasks to commands for `rmfs.traffic`, and reacts to the events that it reports."""
 
 from __future__ import annotations
 
@@ -33,9 +33,10 @@ _DRIVE, _LIFT, _SET_DOWN, _STATION = (
 class Dispatch:
     """Starts tasks and tracks robots.
 
-    A robot is sent to a storage location only if no other robot stands there or is on its way
-    there. If a robot without work stands beneath a pod that is needed, it is sent elsewhere first;
-    the robot that fetches the pod starts when the place has been left.
+    A storage location where a robot stands, or to which it is sent, is reserved for it until it has
+    a plan to leave; only then may another robot be sent there. If a robot without work stands
+    beneath a pod that another robot is to fetch, the first is sent elsewhere, and the other starts
+    when the location is no longer reserved.
     """
 
     def __init__(
@@ -60,7 +61,7 @@ class Dispatch:
     # --- decisions of TA ------------------------------------------------------------------------
 
     def start(self, decision: TaskDecision | Charge) -> None:
-        """Let a robot start a decided task."""
+        """Let a robot start the task that a decision gives it."""
         self._begin(decision.task())
 
     def _begin(self, planned: Task) -> None:
@@ -79,7 +80,7 @@ class Dispatch:
             self._command(robot, waypoint, _way(task))
 
     def _fetch(self, robot: Robot) -> None:
-        """Send a robot to its pod as soon as no other robot keeps the place."""
+        """Send a robot to its pod as soon as the location is reserved for no other robot."""
         task = robot.task
         assert task is not None
         place = self._storage.place_of[task.pod]
@@ -148,7 +149,7 @@ class Dispatch:
     # --- reports of traffic ---------------------------------------------------------------------
 
     def departed(self, index: int, _place: int = -1) -> None:
-        """Release the places a robot has left, and start robots that waited for one of them."""
+        """Release storage locations that a robot leaves, and send robots that wait for one."""
         robot = self._world.robots[index]
         if len(robot.places) < 2 and robot.waypoint in robot.places:
             return
@@ -170,7 +171,7 @@ class Dispatch:
         return self._world.robots[keeper].waypoint == place
 
     def lift_started(self, index: int, pod: int) -> None:
-        """Record that a robot is lifting its pod, and that it goes on to its station or place."""
+        """Record that a robot starts to lift its pod; its next destination is that of its task."""
         world = self._world
         robot = world.robots[index]
         assert robot.task is not None
@@ -191,7 +192,7 @@ class Dispatch:
         self._services[station].go_on()
 
     def set_down(self, index: int, pod: int) -> None:
-        """Record that a pod has been set down at its place and is available."""
+        """Record that a robot has set down its pod, which is now available."""
         robot = self._world.robots[index]
         self._world.set_down(robot, robot.waypoint)
         self._events.pod_set_down(self._world.now_s, pod, index, robot.waypoint)

@@ -1,4 +1,4 @@
-"""Disturbances of a run: breakdowns, slow robots, closures, late motions, and failed chargers."""
+"""Disturbances of a run, such as breakdowns of robots, closed waypoints and failed chargers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rmfs.traffic import Traffic
 
 AGAIN_US = 1_000_000
-"""Delay in us before another attempt to start or end a disturbance that is impossible now."""
+"""Delay in us after which an impossible start or end of a disturbance is tried again."""
 
 TRIES = 20
 """Number of waypoints tried when looking for one that can be closed."""
@@ -39,14 +39,15 @@ _LATE_MOTIONS = 4
 
 
 class Disturbance(NamedTuple):
-    """A disturbance with a start and an end; late motions are not recorded as disturbances.
+    """One disturbance, from its start to its end; late motions are not recorded.
 
     Attributes
     ----------
     kind
         `breakdown`, `slow`, `closure`, `charger` or `elevator`.
     element
-        Number of the robot, waypoint, station or elevator, according to the kind.
+        Index of the robot that breaks down or is slow, of the closed waypoint, of the charger
+        (among all stations), or of the elevator.
     from_us, to_us
         Start and end in microseconds.
     """
@@ -68,14 +69,15 @@ class DisturbanceSource:
     Attributes
     ----------
     begun
-        Disturbances so far, in the order in which they were recorded. `to_us` is `FOR_EVER_US`
-        while the end is not known. The end of a breakdown is known when it is recorded; its start
-        may then be in the near future.
+        The recorded disturbances, in the order of recording. While the end of one is not known,
+        its `to_us` is `FOR_EVER_US`. A breakdown is recorded together with its end, possibly
+        shortly before it starts.
 
     Raises
     ------
     InputError
-        If an elevator does not exist, or chargers are to fail and the layout has none.
+        If an elevator that is to be out of service does not exist, or if chargers are to fail but
+        the layout has none.
     """
 
     def __init__(
@@ -108,15 +110,19 @@ class DisturbanceSource:
 
     @property
     def slow(self) -> list[tuple[int, int, int, float]]:
-        """Periods in which robots were slow: robot, start and end (us), share of the top speed."""
+        """Periods in which robots are slow.
+
+        Each is a tuple of the robot, the start and end in us, and the robot's speed as a share of
+        its top speed.
+        """
         share = self._given.slow.speed_share if self._given.slow is not None else 1.0
         slow = (one for one in self.begun if one.kind == "slow")
         return [(one.element, one.from_us, one.to_us, share) for one in slow]
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return the number of disturbances in a time interval, and their total time in it, in s.
+        """Return how many disturbances overlap a period, and their total duration in it, in s.
 
-        The times of simultaneous disturbances are added up.
+        The durations of simultaneous disturbances are added up.
         """
         start_us, end_us = round(start_s * 1e6), round(end_s * 1e6)
         parts = [
@@ -127,7 +133,10 @@ class DisturbanceSource:
         return len(parts), sum(parts) / 1e6
 
     def begin(self) -> None:
-        """Schedule the first disturbance of each kind, elevator outages, and late motions."""
+        """Schedule the first disturbance of each random kind, and all outages of elevators.
+
+        Late motions are left to traffic, which draws them from now on.
+        """
         for kind, given in enumerate(self._given_by_kind()):
             if given is not None:
                 self._repeat(kind)
@@ -143,7 +152,7 @@ class DisturbanceSource:
             self._agenda.after(round(begin_s * 1e6), stop)
 
     def redraw(self) -> None:
-        """Redraw the next disturbance of each kind, and late motions.
+        """Draw anew the next disturbance of each random kind, and all late motions to come.
 
         Disturbances in progress continue, and outages of elevators keep their times.
         """

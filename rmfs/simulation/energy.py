@@ -1,4 +1,4 @@
-"""Energy model of a run: passes masses and powers of robots and pods to traffic."""
+"""Inputs of the energy model of `rmfs.traffic`: parameters of robots, and masses of pods."""
 
 from __future__ import annotations
 
@@ -36,7 +36,8 @@ class PodMasses(Observer):
     Parameters
     ----------
     given
-        The scenario's energy parameters, with the masses of pods and goods.
+        The scenario's energy parameters, among them the mass of an empty pod, and that of the
+        goods in one unit of space.
     fleet
         Traffic, which is notified of each change.
     """
@@ -61,11 +62,11 @@ class PodMasses(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """Reduce the mass of a pod by one unit."""
+        """Reduce the mass of a pod by that of the picked unit."""
         self._weigh(pod)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Increase the mass of a pod by a bundle."""
+        """Increase the mass of a pod by that of the stored bundle."""
         self._weigh(bundle.pod)
 
     def _weigh(self, pod: int) -> None:

@@ -1,4 +1,4 @@
-"""Completes TA decisions made outside the simulation, if they leave a choice to other problems."""
+"""Asks PPS, PSA or repositioning to complete TA decisions made outside the simulation."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def work(decision: WorkFor, view: View, consult: Consult) -> TaskDecision | None
 
 
 def store(decision: Store, consult: Consult) -> TaskDecision | None:
-    """Return the task for a `Store` decision, whose place PSA chooses; None if it finds none."""
+    """Return the task for a `Store` decision; None if PSA finds no storage location."""
     place = consult.place_for(decision.robot)
     return Park(decision.robot, place) if place >= 0 else None
 

@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 class Events(Observer):
-    """Passes every callback to several observers, in order.
+    """Passes every event to several observers, in order.
 
-    For speed, if only one observer overrides a callback, its method replaces the one here; a
-    callback that no observer overrides does nothing. A run makes tens of thousands of calls.
+    Events are frequent. For speed, if only one observer overrides a callback, its method replaces
+    that of this object; a callback that no observer overrides does nothing.
     """
 
     def __init__(self) -> None:

@@ -1,4 +1,4 @@
-"""The interface to the robots: the few calls of traffic that other parts of a run need."""
+"""The interface by which `Dispatch` drives robots: the methods of `Traffic` that it needs."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import Protocol
 
 
 class Fleet(Protocol):
-    """Drives robots (`rmfs.traffic.Traffic`)."""
+    """Drives robots; implemented by `rmfs.traffic.Traffic`."""
 
     def command(self, robot: int, program: list[tuple[int, int]], /) -> None:
         """Give a robot its next steps, as pairs of a `Step` and its argument."""
         ...
 
     def rest_waypoint(self, robot: int) -> int:
-        """Return the waypoint where a robot stands, or where its plan ends."""
+        """Return the waypoint where a robot's plan ends or, without a plan, where it stands."""
         ...

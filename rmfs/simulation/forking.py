@@ -1,7 +1,8 @@
-"""Copies of a running simulation, in memory and in files.
+"""Copies of a running simulation in memory; for files, see `rmfs.simulation.saving`.
 
-A simulation is plain data: agenda entries are bound methods, and no generator of a controller is
-alive between two steps. It is copied by pickling; objects that never change are shared.
+A simulation is data that can be pickled: entries of the agenda are bound methods or partials of
+these, and generators of controllers are not part of its state. Copies are made by pickling; objects
+that never change are shared.
 """
 
 from __future__ import annotations

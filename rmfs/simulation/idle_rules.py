@@ -14,9 +14,10 @@ if TYPE_CHECKING:
     from rmfs.world import World
 
 SHARE = 0.5
-"""A rule is reported if it made no decision for at least this share of the run, up to its end."""
+"""A rule is reported if the time without a decision at the end of a run is at least this share of
+the run, and at least `LEAST_S`."""
 LEAST_S = 300.0
-"""Minimum time in s without a decision for which a rule is reported."""
+"""Minimum time without a decision at the end of a run, in s."""
 
 
 class IdleRuleWarning(UserWarning):
@@ -30,7 +31,7 @@ def idle_rules(
     end_s: float,
     outside: frozenset[Problem] = frozenset(),
 ) -> list[str]:
-    """Describe rules of POA, RPS, ROA and TA that have decided nothing for long while work waits.
+    """Describe the rules of POA, RPS, ROA and TA that have long been idle although work waits.
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ def idle_rules(
     Returns
     -------
     list of str
-        One line per rule; empty if there is none.
+        One line for each such rule.
     """
     found = []
     for problem in (Problem.POA, Problem.RPS, Problem.ROA, Problem.TA):

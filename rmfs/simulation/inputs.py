@@ -22,14 +22,15 @@ Overrides = list[tuple[list[str], Any]]
 
 @dataclass(frozen=True)
 class Inputs:
-    """The inputs of a run, after overrides.
+    """The inputs of a run, with all overrides applied.
 
     Attributes
     ----------
     overrides
-        All overrides: those given, and those that a scenario of RAWSim-O implies for the layout.
+        All overrides, as (path, value) pairs: those given, and those that a scenario of RAWSim-O
+        implies for the layout.
     pacing
-        (path, value) pairs for the pacing; the first key, `pacing`, is left out of the paths.
+        The overrides of the pacing; the first key of each path, `pacing`, is left out.
     notes
         For each input imported from RAWSim-O files, what the import leaves out or changes.
     """
@@ -88,7 +89,7 @@ def load_inputs(
 def as_overrides(settings: Mapping[str, Any]) -> Overrides:
     """Split the dotted keys of `settings` into paths; return (path, value) pairs.
 
-    Values that are classes are replaced by names.
+    Classes among the values are replaced by names under which this process finds them.
 
     Raises
     ------
@@ -110,7 +111,7 @@ def as_overrides(settings: Mapping[str, Any]) -> Overrides:
 
 
 def name_of(given: Any) -> str:
-    """Return the name of an input: of a path, its stem; of an object, its attribute `name`."""
+    """Return the name of an input: the stem of a path, or the attribute `name` of an object."""
     return Path(given).stem if isinstance(given, str | Path) else str(given.name)
 
 

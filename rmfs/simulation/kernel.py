@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 
 class Kernel(Loop):
-    """One run and its parts, which know each other only as far as necessary; `Loop` drives it.
+    """One run, put together from its parts; the base class `Loop` drives it.
 
     Parameters
     ----------
@@ -66,21 +66,22 @@ class Kernel(Loop):
         Notified of everything that happens.
     outside
         Decision problems that are decided outside the simulation, such as `["poa", "pps"]`; `step`
-        returns their questions. Their controllers stay installed: they determine the times of the
-        questions, and give advice.
+        returns each decision to be made. The controllers of these problems stay installed: they
+        determine when decisions are due, and can give advice.
     pacing
         How simulated time accounts for the computation of optimisers.
     traffic
-        Model of the robots' motion. Default: the compiled core without a trace.
+        Model of the robots' motion. Default: a `Traffic` object that records no trace.
     streams
-        Records all orders and bundles that arrive, for writing and replay.
+        Records all orders and bundles that arrive, so that they can be written to files and used
+        in other runs.
 
     Attributes
     ----------
     world, view
         The state of the warehouse, and the read-only view of it that controllers get.
     interventions
-        For each interactive exchange of a controller, its time (s) and the new choice.
+        For each exchange of a controller by `exchange`, its time (s) and the new controller.
 
     Raises
     ------
@@ -226,7 +227,7 @@ class Kernel(Loop):
         self._due.signal(Trigger.START)
 
     def exchange(self, choice: Choice) -> None:
-        """Exchange a controller interactively at this instant; the run records it."""
+        """Install a controller that a user has chosen, at this instant, and record the exchange."""
         self.interventions.append((self.world.now_s, choice))
         self.phase.exchange(choice)
 
@@ -239,12 +240,14 @@ class Kernel(Loop):
     def take_over(
         self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
     ) -> None:
-        """Apply a decision and install another controller: used in copies, to try the decision.
+        """Apply a decision, and install `base` for the later decisions of the problem.
+
+        This is used in copies of the run, to try out the decision.
 
         Parameters
         ----------
         watch
-            Observer that is notified of the consequences.
+            Observer that is notified of what happens from now on.
         """
         *inside, triggers = self.events.observers
         kept = [one for one in inside if type(one) is not Observer]
@@ -254,12 +257,12 @@ class Kernel(Loop):
         self._unsettled = True
 
     def redraw(self) -> None:
-        """Redraw future arrivals and disturbances, after all random streams have been replaced.
+        """Draw future arrivals and disturbances anew, after all random streams have been replaced.
 
         Raises
         ------
         InputError
-            If arrivals come from a file.
+            If arrivals come from a file and so cannot be drawn.
         """
         self.arrivals.redraw()
         self.disturbances.redraw()

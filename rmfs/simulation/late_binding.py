@@ -1,4 +1,4 @@
-"""Late binding: adds new work to the task of a pod that is on its way."""
+"""Late binding: adds new work to a task while its pod is being carried to a station."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 
 class LateBinding(Observer):
-    """Adds new work to the tasks of pods that are on their way to a station.
+    """Adds new work to tasks while their pods are being carried to a station.
 
     It does so when an order is assigned or queued (put into the pool of a station), a bundle is
-    assigned, or a pod is lifted.
+    assigned, or a pod is lifted. Work is added to a task only while a robot carries its pod and the
+    task still has units to pick or bundles to store; when none are left, TA decides what the robot
+    does next. If several pods qualify, the one that reaches the station first is given work first.
 
-    Requests of queued orders are also bound when a task starts. Otherwise, a task is extended only
-    while its pod is carried and it still has units to pick or bundles to store; when it has none
-    left, TA decides what the robot does next. If several pods qualify, the one that reaches the
-    station first gets the work. The parameters of the PPS controller determine whether work is
-    added at all, and whether requests of queued orders are bound as well.
+    In addition, requests of queued orders are bound to a pod when its task starts. The parameters
+    of the PPS controller determine whether work is added at all, and whether requests of queued
+    orders are bound.
     """
 
     def __init__(
@@ -58,15 +58,15 @@ class LateBinding(Observer):
         self._bundles.append(bundle)
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
-        """Record a pod that has just been lifted for a station."""
+        """Record a pod that a robot starts to lift, if the robot is to bring it to a station."""
         task = self._world.robots[robot].task
         if task is not None and task.station >= 0:
             self._pods.append(pod)
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """Bind requests of queued orders to a task that has just started.
+        """Bind requests of queued orders to the pod of a task that has just started.
 
-        They come after the other requests of the task.
+        In the task, they come after the other requests.
         """
         task = self._world.robots[robot].task
         if isinstance(task, PickTask):

@@ -1,4 +1,4 @@
-"""Trials: copies of a run with another future, in which decisions are tried out."""
+"""Trials: copies of a run in which decisions are tried out; their futures are drawn anew."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 
 class Trial(Protocol):
-    """A copy of a run, as needed for a trial."""
+    """A copy of a run, with the methods that a trial needs."""
 
     world: World
 
     def take_over(
         self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
     ) -> None:
-        """Apply a decision, and install the rule that decides from then on."""
+        """Apply a decision, and install the rule `base` for the later decisions of the problem."""
         ...
 
     def run_until(self, time_s: float) -> Any:
@@ -47,7 +47,10 @@ class Copies(Protocol):
     """Creates copies of a saved state of a run."""
 
     def __call__(self, path: tuple[int, ...]) -> tuple[Trial, Any]:
-        """Return a copy of the run with the random streams of `path`, and of all saved with it."""
+        """Return copies of the run and of the object saved with it.
+
+        The copied run uses the random streams of `path`.
+        """
         ...
 
 
@@ -57,7 +60,8 @@ class Forks:
     Parameters
     ----------
     snapshot
-        Saves the state of the run, together with an object that refers to parts of it.
+        Function that saves the state of the run, together with an object that may refer to parts
+        of it.
     """
 
     def __init__(self, snapshot: Callable[[Any], Copies]) -> None:
@@ -79,7 +83,7 @@ class Forks:
 
 
 class ForkedTrials:
-    """Tries out decisions, each in a fresh copy."""
+    """Tries out decisions, each in a new copy of the run."""
 
     def __init__(
         self, copies: Copies, problem: Problem, number: int, horizon_s: float, goal: Goal
@@ -131,14 +135,14 @@ class Earnings(Observer):
     def order_completed(self, order: Order) -> None:
         """Add the value of the order, times the share of the horizon that is left.
 
-        The cost of the time for which it was overdue within the horizon is subtracted.
+        The cost of the order's overdue time within the horizon is subtracted.
         """
         goal = self._goal
         self._value += goal.orders * self._left(order.completed_s)
         self._value -= goal.overdue_s * self._overdue_s(order, order.completed_s)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Add the value of the units, times the share of the horizon that is left."""
+        """Add the value of the bundle's units, times the share of the horizon that is left."""
         self._value += self._goal.units_stored * bundle.units * self._left(bundle.stored_s)
 
     def value(self, world: World) -> float:

@@ -36,14 +36,15 @@ STALL_S = 3600.0
 
 
 class StalledError(RuntimeError):
-    """Nothing moved for `STALL_S` while robots wait for a path; the message lists all robots."""
+    """Nothing has moved for `STALL_S`, and robots wait for a path; the message lists all robots."""
 
 
 class Loop:
     """Repeatedly advances traffic, makes the callbacks that are due, and lets controllers decide.
 
-    Everything at an instant is handled before the controllers are called. A run that is simulated
-    in several calls has the same results as one simulated in one call.
+    Everything that is due at an instant is handled before the controllers are called. A run has the
+    same results whether it is simulated by one call of `run` or by several calls of `run_until` or
+    `step`.
 
     Attributes
     ----------
@@ -99,19 +100,21 @@ class Loop:
         Parameters
         ----------
         progress
-            Called about a hundred times with the simulated time so far and in total, in s.
+            Called about a hundred times, with the current simulated time and the end of the run,
+            in s.
 
         Raises
         ------
         RuntimeError
             If a decision must be made outside the simulation; use `step` instead.
         StalledError
-            If no robot moves any more (only possible in a layout that is not well-formed).
+            If no robot moves any more. With the default path planner, this is possible only in a
+            layout that is not well-formed.
         RuleError
             If a user's controller decides something impossible.
         OptimiserError
-            If an optimiser fails and the pacing is a reproducible one, or a worker process of an
-            optimiser cannot start.
+            If an optimiser fails with a pacing other than `wall`, or if a worker process of the
+            pacing `wall` cannot start.
         ReplayError
             If a replayed run deviates from the recorded one.
         """
@@ -129,7 +132,7 @@ class Loop:
         limit
             Function called before every instant with the present time in us. It returns the latest
             time in us that may be simulated now, and may wait first, for example to keep the run in
-            step with a page that shows it.
+            step with a web page that shows it.
         """
         try:
             for percent in range(101 if progress is not None else 0):

@@ -28,7 +28,7 @@ class Answers(Protocol):
         ...
 
     def came(self, call: Call) -> None:
-        """Record that an answer takes effect at this instant."""
+        """Record an answer that the decision phase of this instant is to pass to the controller."""
         ...
 
 
@@ -38,7 +38,7 @@ class OptimiserGateway:
     Parameters
     ----------
     pacing
-        Determines the simulated time of computations.
+        Runs the optimisers, and determines when each answer takes effect.
     answers
         Receives the answers as they take effect.
     """
@@ -54,7 +54,7 @@ class OptimiserGateway:
 
     @property
     def waits(self) -> bool:
-        """Whether the pacing may have to wait for a running solver; then `limit_us` applies."""
+        """Whether solvers may run while the simulation goes on, then only up to `limit_us`."""
         return self._pacing.waits
 
     def begin(self, modules: Iterable[str]) -> None:
@@ -82,7 +82,7 @@ class OptimiserGateway:
             self._asking = False
 
     def limit_us(self, now_us: int) -> int:
-        """Return the latest time that may be simulated now, in us; may wait for a solver first."""
+        """Wait for solvers if needed; return the latest time that may be simulated now, in us."""
         return self._pacing.limit_us(now_us)
 
     def end(self) -> None:

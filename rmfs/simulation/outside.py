@@ -1,11 +1,15 @@
 """Decisions made outside the simulation: pending questions, and how a run waits for answers.
 
-A waiting run has no live generator of a controller: everything it needs to continue is data, so
-that it can be copied and saved while it waits. A question of the decision phase itself is a *turn*:
-decisions are made one by one until one is declined. A question that a TA rule asks in the middle of
-its work interrupts the rule (`Awaits`). When the answer arrives, the rule is restored to its state
-after its last decision, asked again, and given the answers since then in order. The same applies to
-a rule that is carrying out the answer of an optimiser: it continues with the rest of that answer.
+While a run waits for an answer, no generator of a controller is suspended: everything that the run
+needs to continue is data, so the run can be copied and saved.
+
+A question asked by the decision phase itself is a *turn*: the program outside the simulation makes
+one decision after another, and finally declines to make a further one. A question that a TA rule
+asks while it decides interrupts the rule (`Awaits`). When the program has answered, the rule is
+restored to its state after its last decision and is asked for decisions again; the answers to its
+questions since that decision are stored, and it receives them as it repeats the questions. If a
+rule was interrupted while it carried out the answer of an optimiser, it continues with the rest of
+that answer.
 """
 
 from __future__ import annotations
@@ -27,12 +31,12 @@ ASKED_BY_TA = frozenset({Problem.PPS, Problem.PSA, Problem.REPOSITIONING})
 
 
 def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) -> frozenset[Problem]:
-    """Return the named problems, if they can be decided outside the simulation.
+    """Return the named problems, after checking that they can be decided outside the simulation.
 
     Raises
     ------
     InputError
-        If there is no such problem, or it cannot be decided outside the simulation with these
+        If one of them does not exist, or cannot be decided outside the simulation with these
         controllers.
     """
     valid = [str(problem) for problem in Problem if problem is not Problem.PP]
@@ -64,7 +68,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
 
 
 class Awaits(BaseException):
-    """A controller at work has asked a question that must be answered outside the simulation."""
+    """A question must be answered outside the simulation before the decision phase can go on."""
 
     def __init__(self, question: Question) -> None:
         super().__init__(question)
@@ -82,18 +86,21 @@ class Outside:
     pending
         The question waiting for an answer.
     given
-        Questions that the TA rule has asked since its last decision, each with its answer.
+        Questions of TA that have been answered since its last decision, each with the answer.
     taken
-        Number of these answers that the rule has received since it was last asked for decisions.
+        Number of these answers that TA has received since it was last asked for decisions.
     decided
         Number of decisions in the current turn so far.
     doing
-        A decision of TA that is applied when the questions that it raises have been answered.
+        A decision of TA, made outside, that leaves a choice to PPS, PSA or repositioning; it is
+        applied when that choice has been made.
     refused
-        Decisions of the current turn that failed because no pod or place was found.
-    advisor, advised
-        Iterator over the decisions that the installed rule would make in the current turn, and its
-        last advice.
+        Decisions of the current turn that failed because no pod, place or move was found.
+    advisor
+        Iterator over the decisions that the installed rule would make in the current turn.
+    advised
+        The installed rule's advice on the pending question, in a tuple; None if it has not been
+        asked for.
     """
 
     problems: frozenset[Problem] = frozenset()
@@ -111,28 +118,29 @@ class Outside:
         return self.__dict__ | {"advisor": None, "advised": None}
 
     def knows(self, question: Question) -> bool:
-        """Whether the next given answer belongs to this question of the TA rule."""
+        """Whether the next answer in `given` belongs to this question of TA."""
         return self.taken < len(self.given) and self.given[self.taken][0] == question
 
     def drop_taken(self) -> None:
-        """Drop answers about prepared tasks, since the TA rule does not repeat these questions."""
+        """Drop the answers received so far: they concern prepared tasks, which do not ask again."""
         del self.given[: self.taken]
         self.taken = 0
 
     def begin_attempt(self) -> None:
-        """Forget all answers, since a TA rule is asked anew or one of its decisions was applied."""
+        """Forget all answers, since they do not apply to the next decision of TA."""
         if self.given:
             self.given.clear()
         self.taken = 0
 
     def answer_to(self, question: Question, otherwise: Callable[[], Any]) -> Any:
-        """Return the answer to a question of the TA rule.
+        """Return the answer to a question of TA.
 
         Parameters
         ----------
         otherwise
-            Function that asks the installed controller. The controller's answer is stored as well,
-            so that the controller is asked only once.
+            Function that asks the installed controller; called if the question's problem is not
+            decided outside. The controller's answer is stored like an answer from outside, so that
+            the controller is not asked again when the TA rule repeats the question.
 
         Raises
         ------

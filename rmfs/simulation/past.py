@@ -22,13 +22,13 @@ _PLENTY = 2**40
 
 
 def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderContent]:
-    """Draw `PAST_ORDERS` orders as in the scenario, assuming that every SKU is in stock.
+    """Draw `PAST_ORDERS` orders as the scenario specifies, with unlimited stock of every SKU.
 
     Parameters
     ----------
     seed
-        The run's seed; past orders have separate substreams, so that drawing them has no side
-        effects.
+        The run's seed. Past orders have random substreams of their own, so that drawing them does
+        not change the orders of the run.
     """
     contents: list[OrderContent | None]
     if isinstance(scenario.orders, WordOrders):
@@ -43,7 +43,7 @@ def past_orders(scenario: Scenario, skus: SkuSet, seed: int) -> list[OrderConten
 
 
 class PastOrders:
-    """Draws orders from the time before the run whenever it is called; see `past_orders`."""
+    """Callable that draws orders from the time before the run; see `past_orders`."""
 
     def __init__(self, scenario: Scenario, skus: SkuSet, seed: int) -> None:
         self._scenario, self._skus, self._seed = scenario, skus, seed

@@ -1,4 +1,4 @@
-"""The decision phase: after each instant, controllers are called until no step is due."""
+"""The decision phase at the end of each instant, in which controllers are asked for decisions."""
 
 from __future__ import annotations
 
@@ -38,12 +38,13 @@ if TYPE_CHECKING:
 
 
 class DecisionPhase:
-    """Processes the steps that are due.
+    """Processes the steps that are due at the present instant; in most steps, a controller decides.
 
-    The order is: answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding, PPS, PSA,
-    CA, TA. After each step, the first one in this order that is then due comes next. PPS, PSA and
-    repositioning decide when TA asks them; the steps of PPS and PSA are only for questions to
-    optimisers. TA is also asked at the times that the controller of repositioning specifies.
+    The order of the steps is: answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding,
+    PPS, PSA, CA, TA. After each step, the first one in this order that is then due comes next. PPS,
+    PSA and repositioning decide when TA asks them; in the steps of PPS and PSA, their controllers
+    can only ask optimisers. TA is also asked at the times that the controller of repositioning
+    specifies.
 
     Attributes
     ----------
@@ -100,10 +101,11 @@ class DecisionPhase:
     def exchange(self, choice: Choice) -> None:
         """Install another controller for a problem; it is asked for decisions at this instant.
 
-        Commitments of the previous controller are part of the world and remain: bundles on pods and
-        at stations, orders and robots at work. What only the previous controller could continue is
-        undone: pools are emptied, prepared tasks are dropped, and bundles held back are released
-        if the new controller would never release them.
+        What the previous controller has decided is part of the world and remains: bundles keep
+        their pods and stations, orders their stations, and robots their tasks. What only the
+        previous controller could continue is undone: pools are emptied, prepared tasks are dropped,
+        and bundles that have not been released yet are released if the new controller would never
+        release them.
         """
         problem, new = choice.problem, choice.controller
         if type(self._controllers[problem]) is not new:
@@ -142,7 +144,7 @@ class DecisionPhase:
         self._controllers.made(choice)
 
     def take_over(self, problem: Problem, controller: Controller[Any]) -> None:
-        """Install an existing controller; no problem is decided outside the simulation any more."""
+        """Install a given controller; from now on, no problem is decided outside the simulation."""
         self.outside.problems, self.outside.pending = frozenset(), None
         self._controllers.put(problem, controller)
         self._alarms.cancel(problem)
@@ -324,15 +326,15 @@ class DecisionPhase:
         Raises
         ------
         Awaits
-            If such a choice must be made outside the simulation as well; the decision is applied
-            once it has been made.
+            If such a choice must be made outside the simulation as well; `do_outside` applies the
+            decision once the choice has been made.
         """
         self.outside.doing = decision
         self.outside.begin_attempt()
         self.do_outside()
 
     def do_outside(self) -> None:
-        """Apply the decision made outside the simulation that has not been applied yet."""
+        """Apply the decision `outside.doing`, or add it to `outside.refused` if it has failed."""
         outside, decision = self.outside, self.outside.doing
         outside.taken = 0
         match decision:

@@ -49,19 +49,19 @@ class Run(Results):
     layout, scenario, controllers
         The simulated inputs, after overrides.
     names
-        Layout, scenario and controllers as specified by the user; controllers exchanged
-        interactively during the run are appended to the last name.
+        Layout, scenario and controllers as specified by the user; controllers installed
+        interactively during the run are appended to the name of the controllers.
     overrides
-        (path, value) pairs: those given, and those that a scenario of RAWSim-O implies for the
-        layout.
+        Changed parameters as (path, value) pairs: those given by the user, and those that a
+        scenario of RAWSim-O implies for the layout.
     notes
-        For each input, what an import of RAWSim-O files left out or does differently.
+        For each input imported from RAWSim-O files, what the import left out or changed.
     pacing, pacing_settings
         The pacing as specified by the user, and with all its parameters.
     warmup_s, duration_s, end_s
         Length of the warm-up, length of the measured time, and both together, in s.
     wall_s
-        Wall time of the simulation in s, without loading.
+        Wall time of the simulation in s, not counting the loading of its inputs.
     world, traffic
         The final state of world and traffic.
     statistics
@@ -71,12 +71,12 @@ class Run(Results):
     measures
         The measures that make up the footprint.
     disturbances
-        The disturbances that occurred.
+        The source of disturbances; its attribute `begun` lists those that occurred.
     events
         The recorded events; only if the trace was recorded.
     interventions
-        For each interactive exchange of a controller, its time (s) and the new choice; `names`
-        includes them.
+        For each interactive exchange of a controller, the time in s and the new controller, which
+        `names` includes as well.
     idle_rules
         Descriptions of rules that decided nothing for a long time although work waited.
     """
@@ -136,7 +136,7 @@ class Run(Results):
     def check(self) -> CheckReport:
         """Verify with the independent checker that the motion is safe.
 
-        The footprint then contains the number of `collisions`.
+        From then on, the footprint contains the number of collisions (`collisions`).
 
         Raises
         ------

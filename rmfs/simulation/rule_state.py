@@ -26,8 +26,8 @@ _KNOWN: dict[type, bool] = {}
 class Kept(NamedTuple):
     """A saved state of a controller.
 
-    It includes the objects stored by reference, and for each call to an optimiser the numbers of
-    stale and handled parts of its answer.
+    It includes the objects stored by reference (see `RuleState`) and, of each call to an optimiser,
+    the values of `stale` and `done` (see `Call`).
     """
 
     content: bytes
@@ -39,13 +39,13 @@ class RuleState:
     """Saves and restores the states of controllers.
 
     Robots, orders, pods and everything else in the world are stored by reference, not copied. So
-    are the view, the parameters, and trackers, which follow events and do not change when a rule
-    decides. Of a call to an optimiser, only the numbers of handled and stale parts of its answer
-    are saved.
+    are the view, the parameters, and trackers (which change with events, not while a rule decides).
+    A call to an optimiser is also stored by reference, but the values of its attributes `stale` and
+    `done` are saved.
     """
 
     def keep(self, controller: Controller[Any], answer: Call | None) -> Kept:
-        """Save the state of a controller, and its progress with an answer."""
+        """Save the state of a controller, and how much of `answer`, if any, it has handled."""
         shared: list[object] = []
         stream = io.BytesIO()
         _Keeper(stream, controller, shared).dump(vars(controller))

@@ -65,43 +65,44 @@ def simulate(
     Parameters
     ----------
     layout, scenario, controllers
-        Names of shipped instances, paths, or objects.
+        Each given as the name of a shipped one, as the path of a file, or as an object.
     seed
         Seed of all random streams, 0 or greater.
     set
         Parameters by dotted key, as for `--set`: `{"layout.robots": 16}`. A rule can also be given
         as a class: `{"controllers.psa.name": MyRule}`.
     overrides
-        Parameters as (path, value) pairs, for example `(["layout", "robots"], 16)`; if `set` also
-        contains a parameter, the value in `set` is used.
+        Parameters as (path, value) pairs, for example `(["layout", "robots"], 16)`; for a parameter
+        that is also in `set`, the value in `set` is used.
     observers
         Notified of everything that happens, in addition to the recorder of the standard measures.
     measures
         Additional measures: classes derived from `rmfs.Measure`, or references to them
-        (`module:Class`, `path/to/file.py:Class`, the name of an installed one).
+        (`module:Class`, `path/to/file.py:Class`, or the name of an installed measure).
     driver
-        Function that drives the simulation from its first event to its last, for example to make it
-        wait for something. By default the simulation runs without interruption.
+        Function that runs the simulation from its first event to its last. The default does so
+        without interruption; another function can pause the simulation, for example to save it.
     pacing
         How simulated time accounts for the computation of optimisers: `instant` (not at all),
         `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR` (docs: optimisers in the loop).
     trace
         Whether to record the complete motion of the robots and all events.
     events
-        Log in which to record events, to be read during the run; implies `trace`.
+        Log in which events are recorded, and which can be read during the run; implies `trace`.
     streams
         Records all arriving orders and bundles, for `rmfs.scenario.write_stream`.
     progress
         Called about a hundred times with the simulated time so far and in total, in s.
     remark
-        Called before the run for each note on what an import of RAWSim-O files left out or does
-        differently, with the input concerned (`layout`, ...) and the text.
+        Called before the run for each note on what the import of RAWSim-O files left out or
+        changed. Its arguments are the input concerned (`layout`, ...) and the text of the note.
     allow_not_well_formed
         Whether to accept a layout in which robots may block each other forever.
     traffic_maker
-        Creates the traffic layer from the arguments of `Traffic`; used by the demonstrator.
+        Creates the traffic layer from the arguments of `Traffic`; used by `rmfs.demonstrator` for
+        real and emulated robots.
     resume
-        File written by `Simulation.save` in a run with the same inputs, from which to resume.
+        File from which to resume; `Simulation.save` wrote it in a run with the same inputs.
 
     Raises
     ------
@@ -140,12 +141,12 @@ class Simulation(Kernel):
 
     Parameters
     ----------
-    layout, scenario, controllers, seed, overrides, observers, measures, pacing, trace, events, \
-streams, remark, allow_not_well_formed, traffic_maker
+    layout, scenario, controllers, seed, set, overrides, observers, measures, pacing, trace, \
+events, streams, remark, allow_not_well_formed, traffic_maker
         As for `simulate`.
     outside
-        Decision problems decided outside the simulation, such as `["poa", "pps"]`; `step` returns
-        their questions.
+        Decision problems decided outside the simulation, such as `["poa", "pps"]`; `step`
+        simulates up to the next of these decisions and returns it.
     measured
         Whether to measure the run. If not, it is slightly faster and has no result.
 
@@ -272,7 +273,8 @@ streams, remark, allow_not_well_formed, traffic_maker
     def result(self) -> Run:
         """Return the finished run with its footprint, tables and trace.
 
-        Issues an `IdleRuleWarning` for each rule that decided nothing for long while work waited.
+        Issues an `IdleRuleWarning` for each rule that decided nothing for a long time although work
+        waited.
 
         Raises
         ------

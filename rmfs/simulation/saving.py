@@ -65,7 +65,8 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
     Raises
     ------
     InputError
-        If the inputs differ, in which case the message names them, or the file cannot be read.
+        If layout, scenario, controllers, seed or pacing differ (the message names which), or if the
+        file cannot be read.
     """
     try:
         with path.open("rb") as file:
@@ -82,7 +83,7 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
-    """Return hashes of the inputs and the pacing of a simulation, and its seed, by name."""
+    """Return, by name, the seed of a simulation and hashes of its other inputs and its pacing."""
     return {
         "layout": digest(simulation.layout),
         "scenario": digest(simulation.scenario.model_dump(mode="json")),

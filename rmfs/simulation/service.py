@@ -1,10 +1,11 @@
 """Service at the stations: units and bundles are transferred one at a time.
 
-At a pick station a unit occupies the robot for `unit_pick_s` and the station for `unit_transfer_s`.
-Units of the same pod follow each other as fast as the slower of the two allows. After its last unit
-the robot leaves while the station is still busy, so that a change of pods takes no extra time if it
-is shorter than the rest of the transfer. At a replenishment station, a bundle occupies both the
-robot and the station.
+At a pick station, a unit occupies the robot for `unit_pick_s` and the station for
+`unit_transfer_s`; the next unit from the same pod starts when both times are over. After the last
+unit from a pod, the robot leaves as soon as `unit_pick_s` is over, even if the station is still
+busy. A change of pods therefore takes no extra time if it is shorter than the rest of the transfer.
+At a replenishment station, a bundle occupies both the robot and the station for
+`bundle_transfer_s`.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class Outlet(Protocol):
     """Destination of orders from pick stations (`rmfs.simulation.packing`)."""
 
     def takes(self, order: Order) -> bool:
-        """Whether an order may leave its station; if not, `hand_on_held` is called once it may."""
+        """Whether an order may leave now; if not, `PickService.hand_on_held` is called later."""
         ...
 
     def released(self, order: Order, *, last: bool, by_hand: bool = False) -> None:
@@ -56,28 +57,32 @@ class Hands(Protocol):
         ...
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the pick to make next, or None to take the first whose order is at the station."""
+        """Return the pick to make next; None means the first pick for an order at the station."""
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
-        """Start to pick a unit, given its times in s in the layout; return how it is handled."""
+        """Start to pick a unit; return how it is handled.
+
+        `station_s` and `robot_s` are the times in s for which it occupies station and robot
+        according to the layout.
+        """
         ...
 
 
 class PickService:
     """The service of one pick station.
 
-    A unit leaves its pod, and its request is fulfilled, when its pick starts. An order whose last
-    unit is picked leaves its slot when the station has finished that unit. When only requests of
-    orders in the station's pool remain for a pod, the pod waits if a slot is about to become free,
-    and is sent away otherwise.
+    A unit leaves its pod, and its request is fulfilled, when its pick starts. An order leaves its
+    slot when the station has finished the last unit of the order. When all requests that remain for
+    a pod are of orders in the station's pool, the pod waits if a slot is about to become free, and
+    is sent away otherwise.
 
     Attributes
     ----------
     outlet
         Destination of orders; None if they are complete after their last pick.
     hands
-        The pickers; None if every unit takes the time of the layout.
+        The pickers; None if every unit takes the times given in the layout.
     """
 
     def __init__(
@@ -248,7 +253,7 @@ class VisitService:
     parameters
         Parameters of the kind.
     world
-        The world, read-only; the effects of a visit must be stored in the station.
+        The world, read-only; the effects of a visit must be stored in `station`.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Orders that stock cannot serve: checked after a waiting time, and cut or cancelled."""
+"""Orders that the stock cannot serve: detected after a waiting time, then cut or cancelled."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class ShortOrders(Observer):
 
     Only units that are in stock and not needed by orders at stations count as available. If they do
     not suffice for an order, it is cut to the available units or cancelled, depending on the
-    policy. An order that is queued for a station, or has been split, is already being served and
-    is not changed.
+    policy. An order that is in a station's pool or has been split is already being served and is
+    not changed.
 
     Parameters
     ----------

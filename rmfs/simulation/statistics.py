@@ -10,21 +10,21 @@ import numpy as np
 
 @dataclass(slots=True)
 class DecisionStatistics:
-    """Calls of the controllers of one decision problem; those in the warm-up are not kept.
+    """Calls of the controllers of one decision problem; calls in the warm-up are not kept.
 
     Attributes
     ----------
     problem
         The decision problem, as in a controllers file.
     name
-        The currently installed rule.
+        Name of the currently installed controller.
     decisions
         Number of decisions made in all calls.
     last_s
         Simulated time of the last decision in s, even if it was made in the warm-up; -1 if there
         was none.
     wall_ns
-        Wall time of each call in ns, excluding the time of other controllers that it consulted.
+        Wall time of each call in ns, excluding the time of controllers consulted during the call.
     """
 
     problem: str

@@ -58,7 +58,8 @@ class Due:
     bits
         Bit k is set if step k is due.
     storage_version
-        Version of `world.storage` of which the controllers were last notified.
+        Value of `world.storage.version` when the controllers were last notified that pods have
+        become available.
     """
 
     def __init__(self, world: World, controllers: ControllerSet) -> None:
@@ -84,29 +85,29 @@ class Due:
             self._masks.append(mask)
 
     def signal(self, trigger: Trigger, subject: Any = None) -> None:
-        """Process a trigger: make its steps due at this instant, and call its listeners."""
+        """Process a trigger: make the steps due that follow from it, and call its listeners."""
         self.bits |= self._masks[trigger]
         for listener in self._controllers.listeners[trigger]:
             listener(trigger, subject)
 
     def want(self, problem: Problem) -> None:
-        """Schedule a call of a problem's controller at this instant."""
+        """Make the step due in which the controller of a problem is called."""
         self.bits |= 1 << STEP_OF[problem]
 
     def want_arrivals(self) -> None:
-        """Schedule the creation of orders or bundles now."""
+        """Make the step due in which orders and bundles are created."""
         self.bits |= 1 << ARRIVALS
 
     def want_answers(self) -> None:
-        """Schedule the delivery of optimisers' answers."""
+        """Make the step due in which controllers get the answers of optimisers."""
         self.bits |= 1 << ANSWERS
 
     def place_left(self) -> None:
-        """Record that a robot left storage locations that other robots may be waiting for."""
+        """Record that a robot has left a storage location, for which others may be waiting."""
         if self._world.asking:
             self.bits |= 1 << TASKS
 
     def storage_changed(self) -> None:
-        """Record that pods or places have become free or occupied."""
+        """Signal that pods have become available."""
         self.storage_version = self._world.storage.version
         self.signal(Trigger.POD_AT_HAND)

@@ -1,4 +1,4 @@
-"""Converts events of a run to triggers of controllers."""
+"""Converts events of a run into triggers, after which controllers may be called."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Triggers(Observer):
     Parameters
     ----------
     due
-        Notified of each trigger and its subject, and of places that were left.
+        Notified of each trigger and its subject, and when a robot has left a storage location.
     """
 
     def __init__(self, due: Due) -> None:
@@ -34,7 +34,7 @@ class Triggers(Observer):
         self._signal(Trigger.ORDER_ASSIGNED, order)
 
     def order_queued(self, order: Order) -> None:
-        """Signal that an order was queued, so that pods may be fetched for it in advance."""
+        """Signal that an order joined a station's pool; pods may be fetched for it in advance."""
         self._signal(Trigger.ORDER_QUEUED, order)
 
     def unit_picked(
@@ -47,7 +47,7 @@ class Triggers(Observer):
         station: int,
         late_bound: bool,
     ) -> None:
-        """Signal that a pod has more room."""
+        """Signal that the pick of a unit has made room on its pod."""
         self._signal(Trigger.UNIT_PICKED, (pod, sku))
 
     def slot_freed(self, order: Order) -> None:
@@ -71,7 +71,7 @@ class Triggers(Observer):
         self._signal(Trigger.BUNDLE_SENT, bundle)
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """Signal that a bundle was assigned and may need a pod."""
+        """Signal that a bundle has a station and a pod, which may have to be brought there."""
         self._signal(Trigger.BUNDLE_ASSIGNED, bundle)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
@@ -87,13 +87,13 @@ class Triggers(Observer):
         self._signal(Trigger.ROBOT_FREE, robot)
 
     def place_left(self, robot: int) -> None:
-        """Signal that a robot left storage locations that other robots may be waiting for."""
+        """Signal that a robot has left a storage location, for which others may be waiting."""
         self._place_left()
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
-        """Signal that a pod is on its way."""
+        """Signal that a robot starts to lift a pod."""
         self._signal(Trigger.POD_LIFTED, pod)
 
     def visit_started(self, time_s: float, station: int, pod: int, robot: int) -> None:
-        """Signal that a pod is at a station."""
+        """Signal that a robot, with or without a pod, reached the head of a station's queue."""
         self._signal(Trigger.POD_AT_STATION, station)

@@ -28,14 +28,15 @@ class VisitController(Observer, Generic[S]):
 
     A controller is asked about each robot that needs a task, before TA is asked, and observes the
     run with the callbacks of `Observer`. It changes nothing itself; its decisions are applied by
-    the simulation. It must hold plain data, because a run can be copied or saved at any moment.
+    the simulation. It may hold only plain data, no open files or functions created on the fly,
+    because a run can be copied or saved at any moment.
 
     Parameters
     ----------
     kind
         The kind of the stations, with its parameters.
     stations
-        Current state of its stations.
+        The current state of each station of this kind.
     view
         The world, read-only.
     seed
@@ -44,7 +45,7 @@ class VisitController(Observer, Generic[S]):
     Attributes
     ----------
     task
-        The class of task used in a `Visit`.
+        The class of task to pass as `what` to a `Visit`.
     rng
         Random generator of the controller.
     """
@@ -57,10 +58,10 @@ class VisitController(Observer, Generic[S]):
         self.rng = generator(seed, Stream.VISITS, *kind.name.encode())
 
     def visit_for(self, robot: Robot) -> Visit | None:
-        """Return the visit for a robot that needs a task, or None.
+        """Return the visit to give to a robot that needs a task, or None to give it none.
 
-        A robot that carries a pod can only use this pod; a robot without a pod may fetch any
-        available pod (`view.storage.is_at_hand`).
+        A robot that carries a pod can only bring this pod to a station; a robot without a pod may
+        fetch any available pod (`view.storage.is_at_hand`).
         """
         raise NotImplementedError
 

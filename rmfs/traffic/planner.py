@@ -1,7 +1,7 @@
 """Path planners in Python: their interface, the state they see, and the questions they may ask.
 
-A planner in Python is a rolling planner: called for all driving robots, it returns a desired path
-for each, and the core grants as much of it as is free. A planner therefore cannot cause a
+A planner in Python is a rolling planner: in each call, it returns a desired path for every driving
+robot, and the core grants as much of each path as is free. A planner therefore cannot cause a
 collision.
 """
 
@@ -30,8 +30,8 @@ Question = Search | Along | Conflict | Reserved
 
 `Search(agent, around=(), until_us=None, labels=2000)`
     The best path of an agent (its index in `agents`) that avoids all granted motion and the paths
-    in `around`; None if none is found. It leads to the goal; if `until_us` is given, it is searched
-    only within a window that ends then. At most `labels` labels are expanded.
+    in `around`; None if none is found. It leads to the goal or, if `until_us` is given, as far
+    towards it as is best until that time. At most `labels` labels are expanded.
 `Along(agent, stops, ready_us=None)`
     The path over the given stops (waypoints) by straight runs and elevator rides, starting as early
     as possible but not before `ready_us`, ignoring other robots.
@@ -56,7 +56,7 @@ class Agent(NamedTuple):
     heading_rad
         Its heading there.
     ready_us
-        Time in us at which it arrives there.
+        Earliest time in us at which it can continue from there.
     goal
         Destination waypoint.
     loaded
@@ -88,7 +88,7 @@ class PathPlanner(Protocol):
         now_us
             Current time in microseconds.
         agents
-            The robots, always in the same order.
+            The driving robots, by ascending index.
 
         Yields
         ------
@@ -98,14 +98,15 @@ class PathPlanner(Protocol):
         Returns
         -------
         list
-            A path for each agent, or None if the agent should stay and be planned again. If a path
-            does not reach the goal, the core appends the rest without checking it for conflicts.
+            A path for each agent, or None: the agent then keeps its earlier path, or stays if it
+            has none, and another call follows. If a path does not reach the goal, the core appends
+            the rest without checking it for conflicts.
         """
         ...
 
 
 class Conversation:
-    """Adapter of a planner to the core, which passes plain tuples."""
+    """Adapter between a planner and the core, which passes agents as plain tuples."""
 
     def __init__(self, planner: PathPlanner) -> None:
         self._planner = planner

@@ -22,12 +22,12 @@ class Readings:
     def motion(self) -> dict[str, NDArray[Any]]:
         """Return totals per robot since the last reset, up to now, each of shape (R,).
 
-        The distances are `distance_m` and, with a pod, `loaded_distance_m`. The times `moving_s`,
-        `turning_s`, `waiting_s` (standing on the way), `served_s` (standing at a station),
-        `idle_s`, `transfer_s` (lifting, setting down) and `riding_s` (elevators) add up to the
-        elapsed time. `queueing_s` counts from entering a queue zone to reaching the station and
-        overlaps with the others; `awaiting_plan_s`, standing without the plan that the robot needs,
-        is part of `waiting_s`.
+        The distances are `distance_m` and the part of it with a pod, `loaded_distance_m`. The times
+        `moving_s`, `turning_s`, `waiting_s` (standing on the way), `served_s` (standing at a
+        station), `idle_s`, `transfer_s` (lifting, setting down) and `riding_s` (elevators) add up
+        to the elapsed time. `queueing_s`, the time from entering a queue zone to reaching the
+        station, overlaps with them; `awaiting_plan_s`, the time in which the robot stands because
+        its plan is not ready, is part of `waiting_s`.
         """
         return self._core.motion()
 
@@ -56,14 +56,15 @@ class Readings:
         return self._core.level(robot)
 
     def heat(self) -> dict[str, NDArray[Any]]:
-        """Count visits and standing time of robots that are not idle, since the last reset.
+        """Return how often robots reached waypoints, and how long they stood there.
 
-        Per waypoint, shape (N,): `visits` and `waiting_s`, and the part of them with a pod,
-        `loaded_visits` and `loaded_waiting_s`. Per pair of waypoint and purpose that occurred,
-        shape (M,): `stays_waypoint`, `stays_purpose`, `stays_visits` and `stays_waiting_s`. The
-        purpose is the number of the station for which a robot works, also while it fetches the pod.
-        It is S, the number of stations, if the robot stores a pod or fetches one for no station,
-        and S + 1 for everything else.
+        Counts start at the last reset; the time for which idle robots stand is not counted. Per
+        waypoint, shape (N,): `visits` (robots that passed or stopped) and `waiting_s`, and the
+        parts of these with a pod, `loaded_visits` and `loaded_waiting_s`. Per pair of waypoint and
+        purpose that occurred, shape (M,): `stays_waypoint`, `stays_purpose`, `stays_visits` and
+        `stays_waiting_s`. The purpose is the number of the station for which a robot works, also
+        while it fetches the pod; S, the number of stations, if the robot stores a pod or fetches
+        one for no station; and S + 1 for everything else.
         """
         counted: dict[str, NDArray[Any]] = self._core.heat()
         at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])
@@ -74,17 +75,20 @@ class Readings:
     def edges(self) -> dict[str, NDArray[Any]]:
         """Return the edges and elevator rides used since the last reset, by their end points.
 
-        The columns are `from_wp`, `to_wp`, `passages`, and `loaded_passages` for those with a pod.
+        The columns are `from_wp`, `to_wp`, `passages` (number of uses) and `loaded_passages`
+        (number of uses with a pod).
         """
         return self._core.edges()
 
     def trips(self) -> dict[str, NDArray[Any]]:
-        """Return the trips finished since the last reset, ordered by their end.
+        """Return the trips finished since the last reset, in the order in which they finished.
 
-        The columns are `robot`, `kind` (`TripKind`), `t0_us`, `t1_us` (a trip to a station ends at
-        its queue zone), `from_wp`, `to_wp`, `loaded`, `distance_m`, `unhindered_s` (lower bound of
-        the time from rest to rest), `energy_j` (0 if energy is not counted), `awaited_s` (time at
-        its beginning in which the robot waited for its plan).
+        The columns are `robot`, `kind` (`TripKind`), `t0_us`, `t1_us`, `from_wp`, `to_wp`,
+        `loaded`, `distance_m`, `unhindered_s` (lower bound of the duration), `energy_j` (0 if
+        energy is not counted) and `awaited_s` (how long the robot waited for its plan at the
+        beginning). A trip to a station is finished when the robot reaches the station, and its
+        distance and energy include the queue; but `t1_us` is the time at which the robot entered
+        the queue zone, and `unhindered_s` refers to the way up to there.
         """
         return self._core.trips()
 
@@ -92,7 +96,7 @@ class Readings:
         """Return the recorded motion so far, in rows sorted by robot and time.
 
         The columns are `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`,
-        `heading0_rad`, `heading1_rad`, `pod` (carried, -1 without), `top_speed_m_s`.
+        `heading0_rad`, `heading1_rad`, `pod` (the one carried; -1 if none), `top_speed_m_s`.
 
         Raises
         ------
@@ -102,7 +106,7 @@ class Readings:
         return joined_holds(self._core.trace(0)[0])
 
     def trace_after(self, known: int) -> tuple[dict[str, NDArray[Any]], int]:
-        """Return the part of the trace that previous calls have not returned, to follow a run.
+        """Follow a run: return the part of the trace that previous calls have not returned.
 
         The motion that each robot is currently executing is included, and is returned again until
         it has ended. A row therefore replaces everything that earlier calls returned for its robot
@@ -127,14 +131,15 @@ class Readings:
         return self._core.trace(known)
 
     def counters(self) -> dict[str, float]:
-        """Return counters of path planning.
+        """Return counters of path planning since the last reset.
 
         They are `plans` (of legs), `plan_failures`, `replans`, `refusals` (a rolling planner
         requested a run that was not free), `improvements` (plans were replaced by better ones),
-        `expansions` (of labels), `cost_tables` (of travel times), and the wall time
-        `planning_s` in s. The simulated time `planning_charged_s` that plans took is 0 unless plans
-        take time. `motions`, `late_motions`, the total `lateness_s` and `repairs` (plans replaced
-        because another robot was late) are 0 unless motions can be late.
+        `expansions` (of labels), `cost_tables` (tables of travel times computed since time zero),
+        and the wall time `planning_s` in s. `planning_charged_s`, the simulated time that plans
+        took, is 0 unless `Traffic.set_pace` was called. `motions`, `late_motions`, the total
+        `lateness_s` and `repairs` (plans replaced because another robot was late) are 0 unless
+        `Traffic.set_lateness` was called.
         """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9
@@ -143,10 +148,11 @@ class Readings:
         return counts
 
     def plans(self) -> dict[str, NDArray[Any]]:
-        """Return the searches for plans of trips since time zero; empty if plans take no time.
+        """Return the searches for plans of trips since time zero; none without `Traffic.set_pace`.
 
-        The columns are `robot`, `asked_us`, `begun_us`, `labels`, `took_us`, `found` and the wall
-        time `wall_s` of the search.
+        The columns are `robot`, `asked_us` (when the robot asked for a plan), `begun_us` (when the
+        planner began with it), `labels`, `took_us` (simulated time that the search took), `found`
+        and `wall_s` (wall time of the search).
         """
         return self._core.plans()
 
@@ -158,7 +164,7 @@ class Readings:
         return self._core.call_times() / 1e9
 
     def reset_statistics(self) -> None:
-        """Reset totals, heat, edges, trips, counters and call times; the trace is kept."""
+        """Start all statistics anew, except those since time zero; the trace is kept."""
         self._core.reset_statistics()
 
     def state_report(self) -> str:

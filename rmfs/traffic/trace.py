@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def joined_holds(trace: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
-    """Merge consecutive rows in which a robot stands still into one.
+    """Merge the consecutive rows of each period in which a robot stands still.
 
     The trace then does not depend on how often trace or statistics were requested during the run.
 

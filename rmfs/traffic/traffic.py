@@ -36,13 +36,13 @@ class Traffic(Readings):
     planner
         Settings of the path planner.
     slow_shares
-        Shares of its top speed to which a robot may be slowed down.
+        Shares of a robot's top speed to which `slow_down` can reduce it.
 
     Attributes
     ----------
     advance
-        Function of a time limit in us. It advances to the next events, or to the limit if none
-        occurs before, and returns the events as tuples in the order of `TrafficEvent`.
+        Function of a time limit in us. It advances to the next time at which there are events, but
+        not beyond the limit, and returns these events as tuples with the fields of `TrafficEvent`.
     command
         Function that gives a robot its program, a list of pairs of a `Step` and its argument.
 
@@ -102,8 +102,8 @@ class Traffic(Readings):
     def from_bytes(cls, layout: Layout, saved: bytes) -> Self:
         """Restore the traffic from bytes saved by `to_bytes`, on the same layout.
 
-        A planner written in Python is unpickled, which can run arbitrary code: load only files that
-        you trust.
+        A planner written in Python is unpickled, which can run arbitrary code: restore only bytes
+        that you trust.
 
         Raises
         ------
@@ -130,11 +130,11 @@ class Traffic(Readings):
         return self._core.now
 
     def rest_waypoint(self, robot: int) -> int:
-        """Return the waypoint at which a robot stands, or at which its plan ends."""
+        """Return the waypoint at which a robot's plan ends; without a plan, where it stands."""
         return self._core.rest_waypoint(robot)
 
     def robot_waypoint(self, robot: int) -> int:
-        """Return the waypoint at which a robot stands, or the next one at which it stops."""
+        """Return the next waypoint at which a robot will stop; without a plan, where it stands."""
         return self._core.next_stop(robot)
 
     def blocked(self) -> list[int]:
@@ -142,7 +142,7 @@ class Traffic(Readings):
         return self._core.blocked()
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
-        """Return unhindered times from every waypoint to one, from rest to rest.
+        """Return unhindered travel times from every waypoint to `waypoint`, from rest to rest.
 
         Parameters
         ----------
@@ -159,7 +159,7 @@ class Traffic(Readings):
         return self._core.travel_times_to(waypoint, kind, loaded)
 
     def travel_times_from(self, waypoint: int, loaded: bool, robot: int = 0) -> NDArray[np.float64]:
-        """Return unhindered times from one waypoint to every waypoint, from rest to rest.
+        """Return unhindered travel times from `waypoint` to every waypoint, from rest to rest.
 
         Parameters
         ----------
@@ -174,13 +174,13 @@ class Traffic(Readings):
         return self._core.travel_times_from(waypoint, kind, loaded)
 
     def plan(self, robot: int) -> list[PlannedMove]:
-        """Return a robot's planned moves from rest to rest, beginning with the present one."""
+        """Return the moves of a robot's plan that have not ended, in their sequence."""
         return [PlannedMove(*move) for move in self._core.plan(robot)]
 
     def delay(self, robot: int, by_us: int, *, begun: bool = False) -> bool:
         """Postpone the rest of a robot's plan; the sequence in which robots use waypoints is kept.
 
-        Robots that use a waypoint after this robot are postponed in turn if necessary.
+        The plans of robots that use a waypoint after this robot are postponed as far as necessary.
 
         Parameters
         ----------
@@ -194,21 +194,22 @@ class Traffic(Readings):
 
         Returns
         -------
-        Whether the plans were shifted. They are not shifted if `begun` is false and motion in
-        progress would have to be postponed, or if a move would have to wait for itself.
+        Whether the delay was possible. It is not, and nothing is changed, if `begun` is false and
+        motion in progress would have to be postponed, or if moves would have to wait for one
+        another in a circle.
         """
         return self._core.delay(robot, by_us, begun)
 
     def clearance(self, robot: int) -> list[int]:
-        """Return the next waypoints of a robot's run to which it may drive now.
+        """Return the waypoints ahead of a robot to which it may drive now.
 
-        They are returned in the sequence of the run. All robots that were to use them earlier have
-        left them.
+        They belong to its present run or, if it stands, to its next one, and are in the sequence of
+        the run. All robots that were to use them earlier have left them.
         """
         return self._core.clearance(robot)
 
     def regroup(self, rests: Sequence[tuple[int, float, int] | None]) -> None:
-        """Discard plans, set robots to their actual positions, and plan their programs anew.
+        """Discard all plans, set robots to given positions, and plan their programs anew.
 
         Parameters
         ----------
@@ -226,15 +227,16 @@ class Traffic(Readings):
         self._core.regroup(list(rests))
 
     def hold(self, robot: int, by_us: int) -> int | None:
-        """Simulate a breakdown: let a robot stand still for a while at its next stop.
+        """Simulate a breakdown: let a robot stand still for `by_us` at its next stop.
 
-        Robots that are to use a waypoint after this robot wait. All robots keep their paths, and
-        the sequence in which they use waypoints.
+        Robots behind it wait for it. All robots keep their paths, and the sequence in which they
+        use waypoints.
 
         Returns
         -------
-        Time at which it continues, in microseconds. None if a robot that is already driving would
-        have to wait; then nothing is changed, and the call can be repeated a moment later.
+        Time at which the robot continues, in microseconds. None if another robot that is already
+        driving would have to wait for it; then nothing is changed, and the call can be repeated a
+        moment later.
         """
         return self._core.hold(robot, by_us)
 
@@ -243,10 +245,10 @@ class Traffic(Readings):
     ) -> None:
         """Let motions begin late from now on, each with the same probability.
 
-        Lateness is drawn just before a robot turns for a run, so that no plan knows of it. Robots
-        that are to use a waypoint after the late robot wait. The order in which robots use
-        waypoints changes only by `repair`. A delay that would force a driving robot to stop is
-        moved to the late robot's next stop.
+        Lateness is drawn just before a robot turns for a run, so that no plan anticipates it.
+        Robots behind the late robot wait for it. The order in which robots use waypoints changes
+        only by `repair`. A delay that would force a driving robot to stop is applied at the late
+        robot's next stop instead.
 
         Parameters
         ----------
@@ -255,9 +257,10 @@ class Traffic(Readings):
         least_us, most_us
             Shortest and longest delay in microseconds, uniformly distributed.
         repair
-            Whether to replan each robot that has to wait for a late robot: alone or, if that does
-            not help, together with the late robot and ahead of it. New plans are kept if they
-            decrease the sum of arrival times. Without effect with rolling planners.
+            Whether to replan each robot that has to wait for a late robot for more than a second:
+            alone or, if that does not help, together with the late robot and ahead of it. New plans
+            are kept if they decrease the sum of arrival times. Without effect with rolling
+            planners.
         seed
             Seed of the draws, below 2^64.
 
@@ -269,7 +272,7 @@ class Traffic(Readings):
         self._core.set_lateness(probability, least_us, most_us, repair, seed)
 
     def reseed_lateness(self, seed: int) -> None:
-        """Draw with another seed from now on; without effect if motions are never late."""
+        """Draw the lateness of motions with another seed from now on, if motions can be late."""
         self._core.reseed_lateness(seed)
 
     def set_pace(
@@ -284,14 +287,14 @@ class Traffic(Readings):
     ) -> None:
         """Let plans of trips take time from now on; a robot departs when its plan is ready.
 
-        Only for planners that plan trip by trip. When a planner begins with a plan, it takes the
-        reservations of that moment as given, looks for a departure after the time that planning
-        takes, and reserves the route immediately, without waiting for that time to pass.
+        Only for planners per leg, which plan trip by trip. When a planner begins with a plan, it
+        takes the reservations of that moment as given and plans a departure that is not before the
+        end of the planning time, but it reserves the route at once.
 
         Parameters
         ----------
         price
-            How the time of a plan is determined: `fixed`, `work`, `wall` or `replay`.
+            How the planning time is determined: `fixed`, `work`, `wall` or `replay`.
         numbers
             Simulated time that is charged. `fixed`: microseconds per plan. `work`: microseconds per
             search, and per label. `wall`: seconds per second of wall time.
@@ -330,12 +333,12 @@ class Traffic(Readings):
         return self._core.change_kind(robot, kind)
 
     def close(self, waypoints: Sequence[int]) -> list[int]:
-        """Close waypoints from now on: no robot enters them until they are reopened.
+        """Close waypoints: no new plan enters them until they are reopened.
 
         A robot that is on a closed waypoint continues and leaves it, unless it is idle. A robot
-        that can no longer stop before one drives through. Any other robot whose plan leads to a
-        closed waypoint gets another plan, or stops before that waypoint and waits. Close all
-        waypoints of an elevator to put it out of service.
+        whose plan leads to a closed waypoint gets another plan or, failing that, stops before that
+        waypoint and waits; if that is impossible too, it still drives through. Close all waypoints
+        of an elevator to put it out of service.
 
         Parameters
         ----------
@@ -344,8 +347,8 @@ class Traffic(Readings):
 
         Returns
         -------
-        Robots that still drive through a closed waypoint because they cannot stop before it, or
-        because other robots need every place where they could stop.
+        Robots that still drive through a closed waypoint, because they can no longer stop before
+        it, or because other robots need every place where they could stop.
 
         Raises
         ------
@@ -382,17 +385,17 @@ class Traffic(Readings):
         Parameters
         ----------
         model
-            Eleven numbers in the order of `Model` in src/energy.rs: mass of a robot (kg), rolling
-            resistance per weight, inertia of rotating parts as a share of the mass, efficiency of
-            the drive, share of braking energy that is recuperated, resisting torque of turns per
-            weight (m), radius of gyration (m), height (m) and efficiency of a lift, standby power
-            without and with a pod (W).
+            Eleven numbers in the order of `Model` in rmfs/traffic/src/energy.rs: mass of a robot
+            (kg), rolling resistance per weight, inertia of rotating parts as a share of the mass,
+            efficiency of the drive, share of braking energy that is recuperated, resisting torque
+            of turns per weight (m), radius of gyration (m), height (m) and efficiency of a lift,
+            standby power without and with a pod (W).
         pods_kg
             Mass of each pod with its stock in kg, shape (P,).
         initial_j
             Initial energy in each battery in J, shape (R,). Default: 0.
         battery
-            Capacity (J), and the level, as a share of it, above which the power of a charger falls.
+            Capacity (J), and the share of it above which the power of a charger falls.
         power_w
             Power in W that each waypoint supplies to a robot that stands there, shape (N,).
             Default: 0.
@@ -409,7 +412,7 @@ class Traffic(Readings):
         self._core.set_power(waypoint, watts)
 
     def exchange_battery(self, robot: int, level_j: float) -> None:
-        """Exchange the battery of a robot that stands still for one with `level_j` joules.
+        """Give a robot that stands still another battery, which holds `level_j` joules.
 
         The energy gained counts as charged.
         """

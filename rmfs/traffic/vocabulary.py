@@ -1,4 +1,4 @@
-"""Vocabulary of traffic: commands to robots, and the events that it reports."""
+"""Vocabulary of traffic: the commands that it takes and the events that it reports."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Step(IntEnum):
 
 
 class EventKind(IntEnum):
-    """Kinds of events of traffic; brackets tell what the `value` of an event of each kind is."""
+    """Kinds of events of traffic, each with the meaning of `TrafficEvent.value` in brackets."""
 
     ARRIVED = 0
     """The robot has finished a drive (waypoint)."""
@@ -41,8 +41,8 @@ class EventKind(IntEnum):
 class Piece(IntEnum):
     """Kinds of rows in a trace.
 
-    A run is recorded as GUIDED if it was delayed on its way: the robot's path is known, but not its
-    position on the path.
+    A run is recorded as GUIDED if it was delayed on its way: the robot's path is known, but not
+    where on the path the robot was at each time.
     """
 
     HOLD = 0
@@ -89,11 +89,11 @@ class CutOff(NamedTuple):
     Attributes
     ----------
     storage
-        Storage locations (waypoints) that are closed, or that routes for pods do not connect with
-        every remaining station in both directions.
+        Storage locations (waypoints) that are closed, or that lack a route for pods to or from one
+        or more of the remaining stations.
     stations
-        Stations (numbers) that are closed, or that routes for pods do not connect with any storage
-        location in both directions.
+        Stations (numbers) that are closed, or to which pods cannot be carried from any storage
+        location and back.
     """
 
     storage: list[int]

@@ -57,7 +57,7 @@ class TripRun:
 
     @property
     def delays_s(self) -> NDArray[np.float64]:
-        """Delay of each trip in s: its duration minus the unhindered time, without other robots."""
+        """Delay of each trip in s: its duration minus its unhindered duration."""
         trips = self.traffic.trips()
         taken: NDArray[np.float64] = (trips["t1_us"] - trips["t0_us"]) / 1e6
         unhindered: NDArray[np.float64] = trips["unhindered_s"]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def scenario(
     map_file: Path, scen: Path, robots: int | None = None
 ) -> tuple[Layout, Callable[[], TripStream]]:
-    """Read a map with the first robots of a `.scen` file.
+    """Read a map and the robots of a `.scen` file: the first `robots` or, by default, all.
 
     Returns
     -------
@@ -60,7 +60,9 @@ def scenario(
 def league(
     map_file: Path, agents: Path, tasks: Path | None, robots: int | None = None, seed: int = 0
 ) -> tuple[Layout, Callable[[], TripStream]]:
-    """Read a map with the first robots of an `.agents` file and the goals of a `.tasks` file.
+    """Read a map, the robots of an `.agents` file and the goals of a `.tasks` file.
+
+    The first `robots` robots are read; by default, all.
 
     Parameters
     ----------

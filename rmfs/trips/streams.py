@@ -152,7 +152,7 @@ class PointTrips:
     Parameters
     ----------
     goals
-        For each robot, the waypoints to which it drives in order.
+        For each robot, the waypoints to which it drives, in this order.
     shared
         Goals for robots that have no goals of their own left, assigned in this order.
     """

@@ -1,4 +1,4 @@
-"""The servers that answer pages about recorded runs, or about a live run."""
+"""Servers for the pages that show recorded runs or a live run."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def replay_server(
     """Return a server that shows recorded runs, side by side if there are several.
 
     If `starter` is given, the page has a form that starts runs; if there are no recorded runs, the
-    page has only that form. A run is read again for each request, so that a reloaded page shows the
-    run's present state. If the run cannot be read, the answer states why.
+    page has only that form. The run folder is read again for each request, so that a reloaded page
+    shows its present content. If the run cannot be read, the answer states why.
 
     Raises
     ------

@@ -31,7 +31,9 @@ FAREWELL_S = 3.0
 
 
 def serve_runs(paths: list[Path], *, port: int = 0, open_browser: bool = True) -> None:
-    """Serve up to two runs, and a form that starts further runs, on loopback until interrupted.
+    """Serve up to two recorded runs and a form that starts new ones, until the user interrupts.
+
+    The server is on the loopback interface only.
 
     Raises
     ------
@@ -63,7 +65,9 @@ def watched(
     open_browser: bool = True,
     await_page: bool = False,
 ) -> Iterator[LiveRun]:
-    """Serve a live run on loopback; yield its `LiveRun`, which is to observe and drive the run.
+    """Serve a live run; yield its `LiveRun`, which provides the run's observer and driver.
+
+    The server is on the loopback interface only.
 
     Parameters
     ----------

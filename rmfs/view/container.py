@@ -34,7 +34,7 @@ def pack(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes
         Values that JSON can represent. This function adds `format`, `size` and `arrays` (type,
         offset and length of each array).
     arrays
-        One-dimensional arrays of unsigned bytes, 32-bit integers, and 32- or 64-bit reals.
+        One-dimensional arrays: each of unsigned bytes, 32-bit integers, or 32- or 64-bit reals.
     """
     directory: dict[str, list[Any]] = {
         name: [TYPES[a.dtype.str], 0, len(a)] for name, a in arrays.items()

@@ -1,7 +1,7 @@
 """The data of the form that starts a run, derived from the declared parameters.
 
-A parameter is declared once, in the model of a layout, scenario or rule; its name, meaning, bounds
-and default are sent to the page as JSON Schema.
+A parameter is declared once, in the Pydantic model of a layout, scenario or controller; its name,
+meaning, bounds and default are sent to the page as JSON Schema.
 """
 
 from __future__ import annotations
@@ -61,9 +61,9 @@ def form(chosen: dict[str, str]) -> dict[str, Any]:
     -------
     dict
         `names` holds the possible choices, and `chosen` the present ones. `layout` and `scenario`
-        each hold the `schema` and the `values` of their parameters. `controllers` holds the
-        decision `problems` with their rules, and as `values` the chosen rule of each problem with
-        its parameters.
+        each hold the `schema` and the `values` of their parameters. `controllers` holds
+        `problems`, the decision problems with all their controllers, and `values`, the chosen
+        controller of each problem with its parameters.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def form(chosen: dict[str, str]) -> dict[str, Any]:
 
 
 def problems() -> dict[str, Any]:
-    """Return every decision problem with its rules, their descriptions and their parameters."""
+    """Return every decision problem with the descriptions and parameters of its controllers."""
     return {
         str(problem): {
             "meaning": problem.meaning,

@@ -1,8 +1,8 @@
 """A live run, and the exchange of requests and data between its thread and those of pages.
 
-Only the run's own thread accesses the simulation. Pages leave their requests here, and the run
-processes them between two instants. Data for a page are copied in the run's thread and packed in
-the page's thread.
+Only the run's own thread changes the simulation. Pages leave their requests here, and the run
+processes them before it advances further. Data for a page are copied in the run's thread and packed
+in the page's thread.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class LiveRun:
     def drive(
         self, simulation: Kernel, progress: Callable[[float, float], None] | None = None
     ) -> None:
-        """Simulate a run to its end at the pace that its pages set, and answer them meanwhile."""
+        """Simulate a run to its end, at the pace that its pages set, and answer their requests."""
         with self._meeting:
             self._simulation = simulation
             self._brake(on=True)
@@ -106,7 +106,7 @@ class LiveRun:
     def limit_us(self, now_us: int) -> int:
         """Return the simulated time, in us, up to which the run may advance now.
 
-        This method waits while the run is paused or ahead of its speed.
+        While the run is paused, or would exceed its speed, this method waits and answers the pages.
         """
         with self._meeting:
             while True:
@@ -207,7 +207,8 @@ class LiveRun:
         known
             How many rows of motion and how many events the page already has.
         page
-            Name of the page that asks. A page that has not asked for `ABSENT_S` counts as gone.
+            Name of the page that asks. A page counts as gone once its last request is
+            more than `ABSENT_S` seconds old.
 
         Raises
         ------
@@ -236,7 +237,7 @@ class LiveRun:
         Raises
         ------
         InputError
-            If `do`, `page` or a number is out of range.
+            If `do` or `page` is invalid, or a number is out of range.
         ValueError, TypeError
             If `by_s` or `speed` is not a number.
         """
@@ -267,8 +268,8 @@ class LiveRun:
         Raises
         ------
         InputError
-            If the controller of this problem cannot be exchanged, there is no such rule, the rule
-            does not fit the run or the other controllers, or the run has ended.
+            If the controller of this problem cannot be exchanged, there is no controller of this
+            name, it does not fit the run or the other controllers, or the run has ended.
         """
         if problem not in set(Problem) - FIXED:
             raise InputError(f"{problem}: cannot be exchanged during a run")
@@ -306,7 +307,7 @@ class LiveRun:
             self._meeting.notify_all()
 
     def await_page(self, patience_s: float) -> None:
-        """Wait until a page requests the run, at most `patience_s` seconds of wall time."""
+        """Wait until a page requests the scene, at most `patience_s` seconds of wall time."""
         with self._meeting:
             self._meeting.wait_for(lambda: self._visited, patience_s)
 

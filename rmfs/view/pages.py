@@ -28,12 +28,14 @@ def content(name: str) -> bytes:
 
 
 def single_file(scenes: list[bytes]) -> bytes:
-    """Return the page as one file with script, style and scenes; its policy permits no others.
+    """Return the page as one file with script, style and scenes.
+
+    The content security policy of the file permits no other script or style, and no connection.
 
     Parameters
     ----------
     scenes
-        Scenes, one per run: containers compressed by gzip.
+        Packed scenes, one per run, compressed by gzip.
     """
     script = content("app.js").replace(b"</script", b"<\\/script")
     style = content("app.css")

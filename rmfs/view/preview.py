@@ -23,8 +23,8 @@ def preview(wish: Table) -> bytes:
     Parameters
     ----------
     wish
-        `layout` is the name of a shipped layout. `set` contains values by key, of which only those
-        of the layout are used.
+        `layout` is the name of a shipped layout. `set` contains values of parameters by key, such
+        as `{"layout.robots": 16}`; only those of the layout are used.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """The scene that a page draws: layout, motion and events of a run, as a header and flat arrays.
 
-Motion is not sampled: the page gets all rows of the trace, and computes positions by the same
-kinematics as the traffic core.
+Motion is not sampled: the page gets all rows of the trace, and computes positions with the same
+kinematics as the simulation.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def _of_visits(layout: Layout) -> dict[str, str]:
 
 
 def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:
-    """Return the layout as arrays, together with `sku_space`: space units per unit of each SKU."""
+    """Return the layout as arrays, with `sku_space`: the space that one unit of each SKU needs."""
     return {
         "x_m": layout.x_m.astype(np.float64),
         "y_m": layout.y_m.astype(np.float64),
@@ -159,8 +159,8 @@ def describe(layout: Layout, sku_space: NDArray[np.float64]) -> Arrays:
 def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
     """Return a trace as arrays; its rows must be sorted by robot and time.
 
-    The rows of robot r begin at index `motion.robot_start[r]`. A row ends when the robot's next row
-    begins; the last row of robot r ends at `motion.end_us[r]`.
+    The rows of robot r begin at index `motion.robot_start[r]`. A row lasts until the robot's next
+    row begins; the last row of robot r lasts until time `motion.end_us[r]`.
     """
     start = np.searchsorted(trace["robot"], np.arange(robots + 1)).astype(np.int32)
     end = np.zeros(robots)
@@ -181,7 +181,7 @@ def motion(trace: Mapping[str, NDArray[Any]], robots: int) -> Arrays:
 
 
 def happenings(events: Mapping[str, NDArray[Any]]) -> Arrays:
-    """Return events as arrays, in the order given; kinds and details are given as numbers."""
+    """Return events as arrays, in the given order; kinds and details must already be numbers."""
     return {
         "events.time_us": events["time_us"].astype(np.float64),
         "events.kind": events["kind"].astype(np.uint8),

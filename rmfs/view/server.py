@@ -1,12 +1,12 @@
 """The server of the page and its runs, on the loopback interface only.
 
-The valid paths are those of a fixed table and are never looked up in the file system, so no path
-leads out of the run folder. Requests that name another host (DNS rebinding) or come from another
-origin (`Sec-Fetch-Site`, `Origin`) are refused. Requests that change something need a token, which
-is part of the printed address. Other users of the machine can reach the port but do not have the
-token: they can watch, but no run waits for them. The number of connections and the size of requests
-are limited, and slow clients are disconnected. An error in a request is answered and does not
-affect other requests.
+The path of a request is looked up in a fixed table, never in the file system, so that a request
+cannot reach files outside this table. Requests that name another host (DNS rebinding) or come from
+another origin (`Sec-Fetch-Site`, `Origin`) are refused. Requests that change something need a
+token, which is part of the printed address. Other users of the machine can reach the port but do
+not have the token: they can watch a run but not control it. The number of connections and the size
+of requests are limited, and slow clients are disconnected. If a request fails, the answer states
+the error; other requests are not affected.
 """
 
 from __future__ import annotations
@@ -118,7 +118,7 @@ class Server(ThreadingHTTPServer):
         return f"rmfs-{self.server_port}"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in a thread of its own, unless too many are open."""
+        """Serve a connection in a thread of its own; refuse it if too many connections are open."""
         with self._lock:
             crowded, full = self._open >= MOST_CONNECTIONS, self._open >= 2 * MOST_CONNECTIONS
             idle = min(self._reading, key=self._reading.__getitem__, default=None)
@@ -152,7 +152,7 @@ class Server(ThreadingHTTPServer):
                 self._reading[request] = time.monotonic()
 
     def service_actions(self) -> None:
-        """Disconnect clients that take too long to send a request; called twice a second."""
+        """Disconnect clients that take too long to send a request; called at least every 0.5 s."""
         limit = time.monotonic() - PATIENCE_S
         with self._lock:
             slow = [request for request, since in self._reading.items() if since < limit]

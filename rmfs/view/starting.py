@@ -43,9 +43,10 @@ class Starter:
         Parameters
         ----------
         wish
-            `layout`, `scenario`, `controllers` (shipped names), `seed`, `out` (name of the run
-            folder), `speed` (None: as fast as possible), `trace`, and `set`: values by key, such as
-            `{"layout.robots": 16}`.
+            Optional settings: `layout`, `scenario` and `controllers` (names of shipped files),
+            `seed`, `out` (name of the run folder), `speed` (None: as fast as possible), `trace`
+            (whether to keep the trace in the run folder), and `set` (values of parameters by key,
+            such as `{"layout.robots": 16}`).
 
         Raises
         ------

@@ -1,9 +1,9 @@
 """The colours of the page, for a light and a dark theme.
 
-The colours of stations, tasks of robots and delay differ in hue and lightness: stations are darker
-than robots in the light theme and lighter in the dark theme, and delay has a scale of its own. A
-test ensures that people with common kinds of colour blindness can distinguish them, and that they
-contrast with the floor.
+The colours of stations (by kind) and of robots (by task or by delay) differ in hue and lightness:
+stations are darker than robots in the light theme and lighter in the dark theme, and delay has a
+scale of its own. A test ensures that people with common kinds of colour blindness can distinguish
+the colours, and that the colours contrast with the floor.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ THEMES = {
 
 
 def themes_of(layout: Layout, visits: Mapping[str, str]) -> dict[str, Any]:
-    """Return, by theme, colours of stations, pods, elevators, and robots by task and by delay.
+    """Return each theme's colours of stations, pods, elevators, and robots by task and by delay.
 
     Parameters
     ----------

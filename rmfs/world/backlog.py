@@ -1,8 +1,8 @@
 """Orders and bundles that wait for decisions.
 
 The orders of the backlog are kept as objects in order of arrival and, for rules that compare all of
-them, as a padded matrix: one row per order, one column per line. Rows change place when an order
-leaves; nothing is rebuilt.
+them, as a padded matrix: one row per order, one column per line. When an order leaves, the last row
+moves to its place, so that the matrix need not be rebuilt.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class OrderBacklog:
 
     @property
     def sku(self) -> NDArray[np.int64]:
-        """SKU of each line, shape (B, L); rows of orders with fewer lines end with SKU 0."""
+        """SKU of each line, 0 where there is no line (see `units`), shape (B, L)."""
         return self._sku[: len(self.at_row)]
 
     @property
@@ -71,7 +71,7 @@ class OrderBacklog:
 
     @property
     def weight(self) -> NDArray[np.float64]:
-        """Weight of each order's lateness, given by its class, shape (B,)."""
+        """Weight of each order's lateness, as set for the order's class, shape (B,)."""
         return self._weight[: len(self.at_row)]
 
     @property
@@ -81,7 +81,7 @@ class OrderBacklog:
 
     @property
     def queued_at(self) -> NDArray[np.int32]:
-        """Pick station for which each order is reserved (in its pool), or -1, shape (B,)."""
+        """Pick station in whose pool each order is, -1 if in none, shape (B,)."""
         return self._queued_at[: len(self.at_row)]
 
     def add(self, order: Order) -> None:
@@ -145,7 +145,7 @@ class OrderBacklog:
         return newer
 
     def servable(self, stock: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Whether stock would suffice for each order if there were no others, shape (B,).
+        """Whether `stock` would suffice for each order if it were the only order, shape (B,).
 
         Parameters
         ----------
@@ -191,9 +191,10 @@ class BundleBacklog:
         By pod, the time in s at which the last of its unreleased bundles was promised; pods are
         sorted by this time.
     released
-        By pod, the released bundles without a station; pods are in order of release.
+        By pod, the released bundles that have no station yet; pods whose bundles were released
+        earlier come first.
     space
-        Space units of all bundles.
+        Total space of all bundles, in space units.
     """
 
     def __init__(self) -> None:

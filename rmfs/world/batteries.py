@@ -19,12 +19,12 @@ J_PER_WH = 3600.0
 
 
 class Levels(Protocol):
-    """The part of the traffic model that knows the levels of batteries."""
+    """Interface to the traffic model, which computes the energy in each robot's battery."""
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return quantities by name, each as an array with one value per robot.
+        """Return, by name, arrays of energies (J) and charging times (s), one value per robot.
 
-        Energies are in J; `level_j` is the energy in each battery.
+        `level_j` is the energy in each battery.
         """
         ...
 
@@ -33,7 +33,7 @@ class Levels(Protocol):
         ...
 
     def exchange_battery(self, robot: int, level_j: float) -> None:
-        """Give a robot another battery, which contains `level_j`."""
+        """Exchange a robot's battery for one that contains the energy `level_j`, in J."""
         ...
 
 
@@ -45,17 +45,17 @@ class Batteries:
     given
         Parameters of the batteries.
     levels
-        The traffic model, which knows the levels.
+        The traffic model, which computes the energy in each battery.
 
     Attributes
     ----------
     capacity_j, least_j, reserve_j
         Capacity of a battery, minimum level and additional reserve, in J.
     enough_share
-        Lowest level (share of capacity) that counts as enough energy for any task, with a margin;
-        set at the start of a run.
+        Level (share of capacity) from which the energy suffices for any task, with a margin; set
+        at the start of a run.
     stranded
-        Robots that stand still because their level fell below the minimum.
+        Robots whose level fell below the minimum and that have not been rescued since.
     strandings
         Time (s) and robot of every stranding so far.
     """
@@ -71,7 +71,7 @@ class Batteries:
         self.strandings: list[tuple[float, int]] = []
 
     def usable_j(self, robot: int) -> float:
-        """Return the energy of a robot above minimum level and reserve, in J; may be negative."""
+        """Return the energy in a battery minus minimum level and reserve, in J; may be negative."""
         return self._levels.level_j(robot) - self.least_j - self.reserve_j
 
     def levels_j(self) -> NDArray[np.float64]:
@@ -89,12 +89,12 @@ class Batteries:
         return shares
 
     def mean_draw_w(self, now_s: float) -> float:
-        """Return the mean power drawn since time zero, per robot, in W; 0 at time zero."""
+        """Return the mean power drawn by a robot since time zero, in W; 0 at time zero."""
         used_j = float(self._levels.energy()["ever_used_j"].mean())
         return used_j / now_s if now_s > 0 else 0.0
 
     def exchange(self, robot: int, share: float) -> None:
-        """Give a robot a battery with a level of `share` of the capacity."""
+        """Exchange a robot's battery for one with the level `share`, a share of the capacity."""
         self._levels.exchange_battery(robot, share * self.capacity_j)
 
     def strand(self, robot: int, now_s: float) -> None:
@@ -103,15 +103,15 @@ class Batteries:
         self.strandings.append((now_s, robot))
 
     def rescue(self, robot: int) -> None:
-        """End the stranding of a robot; raise its level to `rescue_share` if it is lower."""
+        """End the stranding of a robot; raise its level to at least `Battery.rescue_share`."""
         self.stranded.discard(robot)
         self.exchange(robot, max(self.given.rescue_share, self.share(robot)))
 
     def seconds(self, from_share: float, to_share: float, power_w: float) -> float:
-        """Return the charging time from one level to another, in s; inf if it is never reached.
+        """Return the charging time from one level to another, in s; inf if it takes forever.
 
-        Levels are shares of the capacity. This is the inverse of `Battery::charged` in
-        rmfs/traffic/src/energy.rs.
+        Levels are shares of the capacity. This is the inverse of `charged`, and follows
+        `Battery::charged` in rmfs/traffic/src/energy.rs.
         """
         if to_share <= from_share:
             return 0.0
@@ -128,7 +128,7 @@ class Batteries:
         return constant + (1 - bend) / pace * log((1 - begun) / (1 - to_share))
 
     def charged(self, from_share: float, power_w: float, seconds: float) -> float:
-        """Return the level after some time at a charger; levels are shares of the capacity."""
+        """Return the level after charging for `seconds`; levels are shares of the capacity."""
         bend = self.given.taper_from_share
         pace = power_w / self.capacity_j
         constant_for = max((bend - from_share) / pace, 0.0)
@@ -146,7 +146,7 @@ def initial_j(given: Battery, robots: int, draw: Callable[[int], NDArray[np.floa
     Parameters
     ----------
     draw
-        Function that draws the given number of random numbers, uniformly from [0, 1).
+        Function that draws n random numbers, uniformly from [0, 1); n is its argument.
     """
     low, high = given.initial_least_share, given.initial_most_share
     return (low + (high - low) * draw(robots)) * given.capacity_wh * J_PER_WH

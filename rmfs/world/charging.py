@@ -1,4 +1,4 @@
-"""Tasks in which robots charge, and the stations where they charge."""
+"""Tasks of going to chargers and swap stations, and the state of these stations."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False)
 class ChargeTask(VisitTask):
-    """The task of going to a charger or swap station without a pod.
+    """The task of a robot without a pod to go to a charger or swap station.
 
     Attributes
     ----------
     until_share
-        Battery level (share of capacity) at which the robot leaves a charger.
+        Battery level (share of capacity) at which the robot leaves a charger; a robot also leaves
+        at the level that counts as full. Swap stations ignore `until_share`.
     """
 
     kind = "charge"
@@ -29,7 +30,7 @@ class ChargeTask(VisitTask):
     until_share: float = 1.0
 
     def started(self, world: Keeps) -> Task:
-        """Register with the station; return the task."""
+        """Register the task with its station and its robot; return the task."""
         return world.start_charge(self)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
@@ -37,12 +38,12 @@ class ChargeTask(VisitTask):
         return world.robots[self.robot].pod < 0
 
     def ended(self, world: Keeps) -> None:
-        """Deregister from the station."""
+        """Remove the task from the tasks of its station."""
         del world.stations[self.station].tasks[self.robot]
 
 
 class RecoveryStation(Station[ChargeTask]):
-    """A station where robots get energy; its tasks are indexed by robot, not by pod."""
+    """A charger or swap station; the keys of `tasks` are robots instead of pods."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
         """Check that each task at this station is the present task of its robot.
@@ -50,7 +51,7 @@ class RecoveryStation(Station[ChargeTask]):
         Raises
         ------
         AssertionError
-            If one is not.
+            If a task is not.
         """
         for robot, task in self.tasks.items():
             if (task.robot, task.station, robots[robot].task) != (robot, self.index, task):

@@ -1,11 +1,12 @@
-"""Stock on the pods: contained, available and promised.
+"""Stock on the pods, and space promised on them.
 
-- *contained*: units that are physically on a pod; decreases when a pick starts.
+- *contained*: units that are physically on a pod; a unit is subtracted when its pick starts.
 - *available*: contained units not yet bound to an extract request.
 - *promised*: space reserved on a pod for bundles to be stored there.
 
-All other quantities (totals per SKU, loads, stock inbound to a station) are derived from these and
-updated in the same operations, so that they always agree. Arrays are exposed as read-only views.
+Totals per SKU, loads of pods and the stock inbound to a station depend on these quantities and are
+updated in the same operations, so that all of them always agree. Arrays are exposed as read-only
+views.
 """
 
 from __future__ import annotations
@@ -32,37 +33,39 @@ def read_only(array: NDArray[np.generic]) -> NDArray:  # type: ignore[type-arg]
 class Inventory:
     """Stock of K SKUs on P pods.
 
-    The space of a unit is a multiple of 2**-20 space units (see `rmfs.scenario`), so sums are exact
-    in any order and loads never drift.
+    The space of a unit is a multiple of 2**-20 space units (see `rmfs.scenario.exact`), so sums of
+    spaces are exact in any order and loads never drift.
 
     Parameters
     ----------
     unit_space
-        Space units of one unit of each SKU, shape (K,).
+        Space of one unit of each SKU, in space units, shape (K,).
     capacity
-        Space units of each pod, shape (P,).
+        Capacity of each pod, in space units, shape (P,).
     pick_stations
         Number of pick stations.
 
     Attributes
     ----------
     contained, available
-        Units per SKU and pod, shape (K, P): rows are contiguous, since rules compare few SKUs over
-        all pods.
+        Units per SKU and pod, shape (K, P). The row of a SKU is contiguous in memory, since rules
+        compare all pods for a few SKUs.
     used, promised, load
         Space taken by the units on each pod, space promised on it, and the sum of both, in space
         units, shape (P,).
     inbound
-        Available units on the pods at, or on their way to, each pick station, shape (S, K).
+        Available units per SKU on the pods that are at, or on their way to, each pick station,
+        shape (S, K).
     uncommitted
         Available units minus ordered units that are not bound yet, per SKU, shape (K,). Negative
         only if orders exceed the stock.
     free_stock
-        As `uncommitted`, but without subtracting open units of orders in the backlog, shape (K,).
+        Available units minus open (not yet bound) units of orders at stations, per SKU, shape
+        (K,): the stock left for orders in the backlog.
     ordered
         Units ordered since time zero, shape (K,).
     wanted
-        Units ordered and not yet picked, bound or not, shape (K,).
+        Units ordered and neither picked nor withdrawn, whether bound or not, shape (K,).
     total_capacity, stored_space, promised_space
         Sums of `capacity`, `used` and `promised` over all pods, in space units.
     """
@@ -111,8 +114,8 @@ class Inventory:
     def skus_on(self) -> NDArray[np.int32]:
         """The SKUs that each pod contains, in any order, shape (P, M); unused entries are K.
 
-        If `weights` has one weight per SKU and a final 0, `weights[skus_on].sum(axis=1)` is, for
-        each pod, the sum of the weights of its SKUs.
+        M grows as needed. If `weights` has one weight per SKU and a final 0,
+        `weights[skus_on].sum(axis=1)` is, for each pod, the sum of the weights of its SKUs.
         """
         return read_only(self._skus_on)
 
@@ -122,7 +125,7 @@ class Inventory:
         return skus
 
     def stock(self, pod: int, sku: int, units: int) -> None:
-        """Put units on a pod without a promise of space for them, as for the stock at time zero."""
+        """Put units on a pod, in space that was not promised for them, as at time zero."""
         space = units * self._unit_space_list[sku]
         before = self._contained.item(sku, pod)
         if not before and units:
@@ -164,7 +167,7 @@ class Inventory:
         self.stock(pod, sku, units)
 
     def demand(self, sku: int, units: int) -> None:
-        """Count units of a new order in the backlog.
+        """Record the units of a SKU in a new order of the backlog.
 
         They are added to `ordered` and `wanted`, and subtracted from `uncommitted`.
         """
@@ -173,15 +176,16 @@ class Inventory:
         self._ordered[sku] += units
 
     def undemand(self, sku: int, units: int) -> None:
-        """Withdraw units from an order in the backlog; they still count as ordered."""
+        """Record that units of an order in the backlog are withdrawn; `ordered` stays the same."""
         self._uncommitted[sku] += units
         self._wanted[sku] -= units
 
     def commit(self, sku: int, units: int) -> None:
-        """Subtract units from `free_stock`; a negative number adds them again.
+        """Subtract units from `free_stock`; a negative number of units is added.
 
-        Units are subtracted when their order is assigned to a station or, if they are bound to a
-        pod while the order is still in a station's pool, when they are bound.
+        The units of an order are subtracted when the order is assigned to a station, except units
+        bound to a pod before, while the order is in a station's pool: these are subtracted when
+        they are bound.
         """
         self._free_stock[sku] -= units
 
@@ -191,7 +195,7 @@ class Inventory:
         Raises
         ------
         ValueError
-            If fewer units are available on the pod.
+            If fewer units of the SKU are available on the pod.
         """
         left = self._available[sku, pod] - units
         if left < 0:
@@ -202,7 +206,7 @@ class Inventory:
             self._inbound[station, sku] -= units
 
     def unbind(self, pod: int, sku: int, units: int) -> None:
-        """Make bound units available again, as this pod is not going to serve their requests."""
+        """Make bound units available again: the pod will not serve their requests."""
         self._available[sku, pod] += units
         station = self._inbound_station[pod]
         if station >= 0:

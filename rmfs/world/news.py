@@ -1,4 +1,4 @@
-"""Change notifications for code that keeps lists up to date instead of checking everything."""
+"""Notifications of changes, for code that updates lists instead of checking everything again."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class News:
         return follower in self._followers
 
     def keep(self, follower: Follower) -> None:
-        """Subscribe a follower; the oldest one may be dropped."""
+        """Subscribe a follower; if there are too many, drop the oldest."""
         self._followers = [*self._followers[-_MOST + 1 :], follower]
 
 

@@ -1,4 +1,4 @@
-"""Operations on orders: they arrive, join a pool, take slots, are cut, and are completed.
+"""Operations on orders, which arrive, join pools, take slots, may lose units, and are completed.
 
 The pool of a pick station consists of orders of the backlog that are reserved for it.
 """
@@ -90,7 +90,7 @@ class OrderOperations(WorldState):
         self.orders.queue_changed(order)
 
     def assign_order(self, order: Order, station: int) -> Order:
-        """Assign an order of the backlog to a pick station; its open requests become the station's.
+        """Assign an order of the backlog, with its open requests, to a pick station.
 
         If the order was in the station's pool, requests already bound to pods stay bound. If a part
         of the order is at the station already, the remaining lines join that part.
@@ -98,7 +98,7 @@ class OrderOperations(WorldState):
         Returns
         -------
         Order
-            The order, or its part, that occupies the slot.
+            The order, or the part of it, that occupies the slot.
 
         Raises
         ------
@@ -127,11 +127,11 @@ class OrderOperations(WorldState):
         return order
 
     def assign_lines(self, order: Order, station: int, skus: Collection[int]) -> Order:
-        """Split an order of the backlog by assigning some of its lines to a pick station.
+        """Split an order of the backlog: assign its lines of the given SKUs to a pick station.
 
         If a part of the order is at the station already, the lines join it. Otherwise they become a
         new part, which takes a slot; but if they are all the lines that the order has left, the
-        order itself takes the slot.
+        order itself takes a slot.
 
         Returns
         -------
@@ -176,7 +176,7 @@ class OrderOperations(WorldState):
         return part
 
     def _open(self, station: PickStation, lines: tuple[OrderLine, ...]) -> None:
-        """Count the lines that have come to a station, and add their open requests to its own."""
+        """Count the lines that have come to a station; add their open requests to the station's."""
         station.requests.add_lines(lines)
         for line in lines:
             self._lines[station.index, line.sku] += 1

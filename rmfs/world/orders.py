@@ -1,7 +1,7 @@
 """Pick orders, their lines, and replenishment bundles.
 
-Times are simulated seconds, nan until the event has happened; indices of pods and stations are -1
-until they are decided.
+Times are in simulated seconds; the time of an event that has not happened is nan. The index of a
+pod or station that has not been chosen is -1.
 """
 
 from __future__ import annotations
@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 class OrderLine:
     """Units of one SKU in one order.
 
-    Each unit is an extract request. A request is *open* until a unit on a certain pod is bound to
-    it, which happens when a robot gets the task to bring that pod, or later during the task.
+    There is an extract request for each unit. A request is *open* until a unit on a certain pod is
+    bound to it, which happens when a robot gets the task to bring that pod, or later during the
+    task.
 
     Attributes
     ----------
@@ -43,8 +44,9 @@ class Order:
     """A pick order: in the backlog, then at one pick station until it is complete.
 
     An order may be split: some of its lines then go to a station as a *part*, which is an order of
-    its own and takes a slot there, while the others stay in the backlog or form further parts. A
-    station has at most one part of an order. The order is complete when all its parts are.
+    its own and takes a slot there, while the others stay in the backlog or form further parts. At
+    any time, a station has at most one part of the same order. The split order is complete when all
+    its parts and its own remaining lines are.
 
     Attributes
     ----------
@@ -65,15 +67,15 @@ class Order:
     slots_taken
         Slots currently occupied by the order and its parts.
     in_file
-        Position among the orders of a file, from 0; -1 if it is not from a file.
+        Position among the orders of a file, from 0; -1 if the order is not from a file.
     cancelled_s
-        Time at which it was cancelled because stock could not serve it.
+        Time at which the order was cancelled because stock could not serve it.
     units_cut
         Number of ordered units that will not be delivered, for lack of stock.
     priority
-        Number of its class if `orders.due.mode = "classes"`, otherwise -1.
+        Index of the order's class in the scenario's `orders.due.classes`; -1 if there are none.
     weight
-        Weight of its lateness, given by its class.
+        Weight of the order's lateness, given by its class; 1 if there are no classes.
     """
 
     index: int
@@ -98,7 +100,7 @@ class Order:
 
     @property
     def all_lines(self) -> tuple[OrderLine, ...]:
-        """Its own lines and those of its parts: all lines that the customer ordered."""
+        """The order's own lines and those of its parts, without lines that lost all their units."""
         return sum((part.lines for part in self.parts), self.lines)
 
     def take_over(self, lines: tuple[OrderLine, ...]) -> None:
@@ -113,7 +115,7 @@ class Order:
             order.unpicked_units += sign * sum(line.open_units for line in lines)
 
     def cut(self, keep: Mapping[int, int]) -> None:
-        """Reduce the units, none of which may be bound to a pod; remove lines left without units.
+        """Reduce the units, which must not be bound to pods; remove lines left without units.
 
         Parameters
         ----------
@@ -136,7 +138,7 @@ class Order:
         skus: tuple[int, ...],
         units: tuple[int, ...],
     ) -> Order:
-        """Create an order with a line for each SKU and its number of units."""
+        """Create an order with one line per SKU; `units` has the number of units of each line."""
         total = sum(units)
         order = cls(index, created_s, due_s, (), total, total)
         order.lines = tuple(
@@ -156,17 +158,17 @@ class Bundle:
     Attributes
     ----------
     space
-        Space units of the whole bundle.
+        Space of the whole bundle, in space units.
     pod
-        The pod with reserved room, or -1.
+        The pod on which room is reserved for the bundle, or -1.
     released
         Whether RPS has released the bundle.
     station
-        The replenishment station with reserved space, or -1.
+        The replenishment station at which space is reserved for the bundle, or -1.
     stored_s
-        Time at which its transfer into the pod started.
+        Time at which the transfer of the bundle into the pod started.
     in_file
-        Position among the bundles of a file, from 0; -1 if it is not from a file.
+        Position among the bundles of a file, from 0; -1 if the bundle is not from a file.
     """
 
     index: int

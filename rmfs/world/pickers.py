@@ -38,13 +38,13 @@ class Picker:
     Attributes
     ----------
     index
-        Number; pickers of the first shift come first.
+        Number of the picker; pickers of the first shift come first.
     shift
         Number of the shift.
     home
         Pick station during that shift.
     speed
-        Relative speed; at 2, a unit takes half the station's time.
+        Relative speed; at 2, a unit takes half as long as at 1.
     station
         Current station, or -1 while away.
     since_s
@@ -79,17 +79,17 @@ class Handled(NamedTuple):
     picker
         Index of the picker.
     seconds
-        Time for which the unit occupied picker and station, rework included.
+        Time for which the unit occupied picker and station, in s, rework included.
     robot_s
         Time for which the unit occupied the robot, in s.
     layer
-        Layer of the pod, from 0 at the bottom; -1 if pods have none.
+        Layer in which the unit lay, counted from 0 at the bottom; -1 if pods have no layers.
     fatigue
-        Fatigue of the picker at the start.
+        Fatigue of the picker when the pick began, 0 to 1.
     error, noticed
         Whether the unit was picked wrongly, and whether this error was corrected.
     face
-        Face of the pod; -1 if pods have none.
+        Face on which the unit lay; -1 if pods have no faces.
     turned
         Whether the pod had to be turned; `seconds` and `robot_s` include the time for turning.
     """
@@ -124,14 +124,14 @@ class Staff:
     at_station
         The picker at each pick station, or None.
     next_change_s
-        Time at which pickers come or leave next; infinite if never.
+        Time at which pickers come or leave next, in s; infinite if never.
     unit_times
-        Distribution of the time per unit for a picker of standard speed.
+        Distribution of the time per unit, without the effects of picker and pod.
 
     Raises
     ------
     InputError
-        If the file of measured times is invalid.
+        If the scenario names a file of measured times per unit that is invalid.
     """
 
     def __init__(self, given: Pickers, pickers: Sequence[Picker], unit_s: Sequence[float]) -> None:
@@ -143,13 +143,13 @@ class Staff:
         self._unit_s = list(unit_s)
 
     def come(self, picker: Picker, now_s: float) -> None:
-        """Record that a picker has come to the home station."""
+        """Record that a picker has come to the station `picker.home`."""
         self.bring(picker, now_s)
         picker.station, picker.since_s = picker.home, now_s
         self.at_station[picker.home] = picker
 
     def leave(self, picker: Picker, now_s: float) -> None:
-        """Record that a picker has left; a unit already started counts as work until its end."""
+        """Record that a picker has left; the rest of a unit already started counts as work."""
         self.bring(picker, now_s)
         self.at_station[picker.station] = None
         picker.station = -1
@@ -203,7 +203,7 @@ class Staff:
         Parameters
         ----------
         station_s
-            Time of a unit according to the layout.
+            Time of a unit according to the layout, in s.
         """
         return self.unit_times.least_s(station_s) * least_factor(self.given)
 

@@ -1,4 +1,4 @@
-"""Faces of pods: where the units of each SKU lie, and which face the picker sees."""
+"""Faces of pods: on which face each unit lies, and from which face a unit is taken."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ if TYPE_CHECKING:
 class PodFaces(PodParts):
     """The faces on which the units of each pod lie.
 
-    A bundle goes to the face with the most room; units that do not fit there go to the next face.
+    A bundle goes to the face with the most room; units that do not fit there go to the face with
+    the next most room, and so on.
 
     Parameters
     ----------
     given
         The scenario's parameters of faces.
     space_per_unit
-        Space units per unit of each SKU, shape (K,).
+        Space of one unit of each SKU, in space units, shape (K,).
     capacity
-        Space units of each pod, shape (P,).
+        Capacity of each pod, in space units, shape (P,).
     """
 
     def __init__(
@@ -34,13 +35,14 @@ class PodFaces(PodParts):
         super().__init__(given.count, space_per_unit, capacity)
 
     def filled(self, pod: int, sku: int) -> list[int]:
-        """Return the faces, the one with the most room first."""
+        """Return the faces of a pod in the order in which they are filled, the emptiest first."""
         return self.roomiest_first(pod)
 
     def take(self, pod: int, sku: int, shown: int) -> int:
         """Take a unit of a SKU, and return the face from which it is taken.
 
-        This is the face shown if it has such a unit, otherwise the face with the most such units.
+        It is taken from the face shown if that face has a unit of the SKU, otherwise from the face
+        with the most units of the SKU.
 
         Parameters
         ----------

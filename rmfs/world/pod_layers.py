@@ -1,4 +1,4 @@
-"""Layers of pods: where the units of each SKU lie."""
+"""Layers of pods: in which layer each unit lies, and from which layer a unit is taken."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ class PodLayers(PodParts):
     given
         The scenario's parameters of layers.
     space_per_unit
-        Space units per unit of each SKU, shape (K,).
+        Space of one unit of each SKU, in space units, shape (K,).
     popularity
         Popularity of each SKU, shape (K,).
     capacity
-        Space units of each pod, shape (P,).
+        Capacity of each pod, in space units, shape (P,).
     """
 
     def __init__(
@@ -43,14 +43,17 @@ class PodLayers(PodParts):
         self._class = _classes(popularity, layers).tolist()
 
     def take(self, pod: int, sku: int) -> int:
-        """Take a unit of a SKU from the fastest layer that has one; return the layer."""
+        """Take a unit of a SKU, and return the layer from which it is taken.
+
+        Of the layers that have such a unit, it is the one with the lowest time factor.
+        """
         lying = self._units[pod, sku]
         layer = next(layer for layer in self._by_time if lying[layer])
         self._take_from(pod, sku, layer)
         return layer
 
     def filled(self, pod: int, sku: int) -> list[int]:
-        """Return the layers in the order in which they are filled with a SKU."""
+        """Return the layers of a pod in the order in which units of a SKU are put into them."""
         if self._given.storing == "golden":
             return self._by_time
         if self._given.storing == "popular":

@@ -19,22 +19,22 @@ _HAIR = 1e-9
 class PodParts:
     """The parts in which the units of each pod lie.
 
-    Each part has an equal share of the pod's capacity. Units for which no part has enough room,
-    although the pod as a whole has, go to the part with the most room.
+    Each part has an equal share of the pod's capacity. If no part has room for a unit, although
+    the pod as a whole has, the unit goes to the part with the most room.
 
     Parameters
     ----------
     parts
         Number of parts.
     space_per_unit
-        Space units per unit of each SKU, shape (K,).
+        Space of one unit of each SKU, in space units, shape (K,).
     capacity
-        Space units of each pod, shape (P,).
+        Capacity of each pod, in space units, shape (P,).
 
     Attributes
     ----------
     used
-        Space in use per pod and part, shape (P, parts).
+        Space in use per pod and part, in space units, shape (P, parts).
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class PodParts:
 
     @abstractmethod
     def filled(self, pod: int, sku: int) -> Iterable[int]:
-        """Return the parts in the order in which they are filled with a SKU."""
+        """Return the parts of a pod in the order in which units of a SKU are put into them."""
 
     def put(self, pod: int, sku: int, units: int) -> None:
         """Store units of a SKU in a pod."""

@@ -1,9 +1,9 @@
 """The put wall: orders that have left the pick stations and are not packed yet.
 
-Every order, or part of one, leaves its pick station in a tote. The last of an order's n totes needs
-no slot of the wall: when the last tote arrives, all are taken out together, so at most n - 1 occupy
-slots. A slot is reserved for a tote when it leaves its station, so that no tote finds the wall
-full.
+Every order, or part of one, leaves its pick station in a tote. Of the n totes of an order, the one
+that leaves last needs no slot of the wall: when all n have arrived, they are taken out together, so
+at most n - 1 occupy slots. A tote that needs a slot reserves one when it leaves its station, and
+waits there while none is free; only a tote carried by hand can find the wall full.
 """
 
 from __future__ import annotations
@@ -29,10 +29,11 @@ class Tote:
     released_s
         Time in s at which the tote left the station.
     arrived_s
-        Time in s at which the tote reached the wall; nan until then, and for a tote that is packed
-        without the wall.
+        Time in s at which the tote reached the wall; nan until then, and if the order is packed
+        without using the wall.
     by_hand
-        Whether the tote was carried to the wall by hand because it had waited too long.
+        Whether the tote was carried to the wall by hand because it had waited too long at its
+        station.
     """
 
     parcel: Parcel
@@ -61,7 +62,7 @@ class Parcel:
     consolidated_s
         Time in s at which the last of its totes reached the wall.
     packing_s, packed_s
-        Times in s at which a packer started and finished.
+        Times in s at which packing of the order started and ended.
     """
 
     order: Order
@@ -81,16 +82,17 @@ class Parcel:
 
 @dataclass(slots=True, eq=False)
 class HeldTote:
-    """An order, or part of one, that cannot leave its pick station.
+    """An order, or part of one, that has been picked but cannot leave its pick station yet.
 
     Attributes
     ----------
     order
-        The order or part that occupies the slot of the station.
+        The order or part; it still occupies its slot at the station.
     since_s
         Time in s at which it was ready to leave.
     timer
-        Number of the scheduled event at which it is carried away by hand; -1 if there is none.
+        Serial number of the scheduled event by which it is carried to the wall by hand; -1 if there
+        is none.
     """
 
     order: Order
@@ -111,14 +113,14 @@ class PutWall:
     Attributes
     ----------
     parcels
-        Parcels by index of the order, from the time when the first tote leaves its station until
-        the order is packed.
+        Parcels by index of the order. An order has a parcel from the time when its first tote
+        leaves the pick station until the order is packed.
     kept
         Number of slots occupied, or reserved for totes on their way.
     travelling
         Number of totes on their way.
     held
-        Totes that cannot leave their pick stations, longest waiting first.
+        Totes that cannot leave their pick stations yet, longest waiting first.
     orders_packed
         Number of orders packed since time zero.
     """
@@ -165,7 +167,7 @@ class PutWall:
         return tote
 
     def pass_by(self, tote: Tote, now_s: float) -> Parcel:
-        """Record that an order in a single tote is packed without the wall; return the parcel."""
+        """Record that an order of one tote is packed without using the wall; return its parcel."""
         self.travelling -= 1
         tote.parcel.packing_s = now_s
         self.pack(tote.parcel, now_s)
@@ -206,7 +208,7 @@ class PutWall:
         Raises
         ------
         AssertionError
-            If a count is wrong; the message names it.
+            If a count is wrong.
         """
         kept = travelling = 0
         for parcel in self.parcels.values():

@@ -1,4 +1,4 @@
-"""Open extract requests, by SKU, of the orders at a pick station, or of those in its pool.
+"""Open requests, by SKU, of the orders at a pick station, or of those in its pool.
 
 The pool of a station consists of orders of the backlog that are reserved for it.
 """
@@ -19,16 +19,18 @@ if TYPE_CHECKING:
 
 
 class OpenRequests:
-    """Units needed by the orders at a station, or by those in its pool, and not yet bound to a pod.
+    """Open requests of the orders at a pick station, or of those in its pool.
+
+    A request is open until it is bound to a pod.
 
     Parameters
     ----------
     need
         Open units per SKU, shape (K,): the station's row of `WorldState.need` or `queued_need`,
-        kept up to date here.
+        which this object keeps up to date.
     news, station
-        Followers of `news` are notified of this station when the first request is added and when
-        the last one is removed.
+        Followers of `news` are notified of a change at `station` whenever the number of open
+        requests rises from zero or falls to zero.
 
     Attributes
     ----------
@@ -38,8 +40,8 @@ class OpenRequests:
     units
         Open units in total.
     version
-        Increases whenever requests are added. A rule that found nothing to do need not look again
-        while the version is unchanged.
+        Increases whenever requests are added. A rule that found no pod for the requests need not
+        search again until the version has increased or a pod has become available.
     """
 
     def __init__(self, need: NDArray[np.int32], news: News, station: int) -> None:
@@ -82,7 +84,7 @@ class OpenRequests:
         self._count_from(before)
 
     def reopen(self, line: OrderLine) -> None:
-        """Reopen one request of a line; a line without open requests goes to the front."""
+        """Reopen one request of a line; if none of the line was open, put it first in `lines`."""
         if not line.open_units:
             self.lines.setdefault(line.sku, deque()).appendleft(line)
         line.open_units += 1
@@ -93,7 +95,7 @@ class OpenRequests:
         self._count_from(self.units - 1)
 
     def take(self, sku: int, at_most: int) -> list[OrderLine]:
-        """Remove at most `at_most` open requests for a SKU, starting with the first lines.
+        """Remove at most `at_most` open requests for a SKU, line by line in the order of `lines`.
 
         Returns
         -------

@@ -1,4 +1,4 @@
-"""State of the robots as far as tasks are concerned; traffic knows their motion."""
+"""State of the robots as far as tasks are concerned; `rmfs.traffic` simulates their motion."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ class Robot:
     task
         Its current task; None if it needs one.
     station
-        The station at the head of whose queue it stands, or -1.
+        The station where it stands at the head of the queue; -1 if there is none.
     places
         Storage locations reserved for it, where it stands or is going to stand.
     prepared
-        Tasks planned after its current one. Nothing is reserved for them: a task that is no longer
-        possible when it is due is dropped.
+        Tasks that are to follow its current one. Nothing is reserved for them: a task that is no
+        longer possible when it is due is dropped.
     """
 
     index: int

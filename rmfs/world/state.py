@@ -41,34 +41,35 @@ class WorldState:
     inventory, storage
         Stock on pods, and where the pods are.
     orders, bundles
-        The two backlogs.
+        The backlogs of orders and of bundles.
     pick_stations, replenishment_stations
         The stations, in the order of the layout.
     slot_news
         Notifications of changed pick stations. A pick station counts as changed when it is switched
         on or off, when a robot reaches or leaves it, and when it gains or loses an order.
     work_news
-        Notifications of stations that gain open work or may have none left. Stations are in the
-        common numbering (pick stations first).
+        Notifications of stations that gain open work (for which no pod is under way) or may have
+        none left, by number in the common numbering (pick stations first).
     work_stations
         All pick and replenishment stations, to which rules assign work, in the common numbering.
     stations
-        All stations, including those that are neither pick nor replenishment stations, which come
-        last.
+        All stations in the common numbering; those that are neither pick nor replenishment
+        stations come last.
     need
-        Open units of the orders at each pick station, per SKU, shape (S, K).
+        Open units (not yet bound to a pod) of the orders at each of the S pick stations, per SKU,
+        shape (S, K).
     queued_need
         Open units of the orders in the pool of each pick station, per SKU, shape (S, K).
     lines
-        Number of order lines of the open orders per pick station and SKU, picked or not, shape
+        Number of order lines, picked or not, of the open orders, per pick station and SKU, shape
         (S, K).
     bundles_waiting
         Number of assigned bundles not yet part of a task, per replenishment station and pod, shape
-        (S, P).
+        (replenishment stations, P).
     robots
         The robots, by index.
     asking
-        Robots without a task, keyed by index, in the order in which they became free.
+        Robots without a task, keyed by index, in the order in which their last tasks ended.
     resting
         Robots at rest or on their way to rest, keyed by index.
     orders_created, orders_completed, bundles_created, bundles_stored, units_picked, units_stored

@@ -53,7 +53,7 @@ class Station(Generic[T]):
 
     @property
     def active(self) -> bool:
-        """Whether new work may be assigned; assigned work is finished in any case."""
+        """Whether new work may be assigned; an inactive station still finishes the work it has."""
         return self._active
 
     @active.setter
@@ -75,7 +75,7 @@ class Station(Generic[T]):
         """React to a change of the station's state or contents; by default do nothing."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
-        """Check the state by recounting; a kind adds its own checks.
+        """Check that the state is consistent; a kind of station may add checks.
 
         Raises
         ------
@@ -113,12 +113,12 @@ class PickStation(Station[PickTask]):
     orders
         The open orders by index, in the order of assignment.
     requests
-        Requests of the open orders not yet bound to a pod.
+        Open requests (not yet bound to a pod) of the orders in `orders`.
     queued
         The pool: orders of the backlog reserved for this station, in the order in which they
         joined.
     queued_requests
-        Requests of the pool not yet bound to a pod.
+        Open requests of the orders in the pool.
     """
 
     def __init__(
@@ -160,7 +160,7 @@ class PickStation(Station[PickTask]):
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Version that changes with new requests, and when a queued order can get a slot."""
+        """Version that changes when requests are added or an order in the pool can get a slot."""
         if not self.queued:
             return (self.requests.version,)
         return self.requests.version, self.queued_requests.version, self.free_slots > 0
@@ -220,7 +220,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Version that changes with new bundles."""
+        """Version that changes when a bundle is added to `waiting`."""
         return (self.version,)
 
     def add(self, bundle: Bundle) -> None:
@@ -231,7 +231,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
         self._work_news.tell(self.index)
 
     def take(self, pod: int) -> list[Bundle]:
-        """Remove and return all bundles that wait for a pod."""
+        """Remove the bundles for a pod from `waiting`, and return them."""
         self._waiting_count[pod] = 0
         self._work_news.tell(self.index)
         return self.waiting.pop(pod, [])

@@ -1,9 +1,8 @@
-"""Storage locations (*places* for short): which pod and which robot has which place.
+"""Storage locations (*places* for short), the pods stored at them, and the robots that keep them.
 
-A robot *keeps* a place while it is on its way there and while it stands there, until traffic
-reports that it has departed; meanwhile no other robot may be sent there (condition W2 of
-`docs/safety.md`). An empty robot may keep a place beneath a stored pod; only a loaded robot needs a
-place without a pod.
+A place is reserved for a robot that is to stand there, and the robot *keeps* it until the robot has
+a plan to leave; meanwhile no other robot may be sent there (condition W2 of `docs/safety.md`). An
+empty robot may keep a place beneath a stored pod; only a loaded robot needs a place without a pod.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ class Storage:
     layout
         The warehouse at time zero.
     robots
-        All robots, as held by the world.
+        All robots: the list `WorldState.robots`.
 
     Attributes
     ----------
@@ -42,7 +41,7 @@ class Storage:
     place_of
         Waypoint at which each pod is stored, or -1 while it is carried.
     claimed_by
-        Robot to whose task each pod belongs, or -1.
+        Robot that carries each pod or has a task with it, or -1.
     kept_by
         Robot that keeps each waypoint, or -1.
     pod_waypoint
@@ -55,8 +54,8 @@ class Storage:
     is_stored
         Whether each pod is at a place and not on a robot, shape (P,).
     is_at_hand
-        Whether each pod is available, shape (P,): it is stored and unclaimed, and no robot keeps
-        its place except one without work.
+        Whether each pod is available, shape (P,): it is stored and unclaimed, and its place is
+        kept by no robot or by one without work (`Robot.is_free`).
     version
         Increases whenever a pod becomes available.
     """
@@ -114,12 +113,12 @@ class Storage:
             self._refresh(self.place_of[pod])
 
     def keep(self, robot: Robot, place: int) -> None:
-        """Reserve a waypoint for a robot that is to stand there, if it is a storage location.
+        """Reserve a place for a robot that is to stand there; ignore waypoints that are no places.
 
         Raises
         ------
         ValueError
-            If another robot keeps it.
+            If another robot keeps the place.
         """
         if self.place_index[place] < 0:
             return
@@ -131,14 +130,14 @@ class Storage:
         self._refresh(place)
 
     def departed(self, robot: Robot, rest: int) -> bool:
-        """Give up the places that a robot has left; return whether there were any.
+        """Release the places that a robot leaves or has left; return whether there were any.
 
         Parameters
         ----------
         rest
-            Waypoint at which the robot's current route ends. The robot keeps it, the place of its
-            task, and the place to which it has been sent, even if no route to that place is planned
-            yet.
+            Waypoint at which the robot's current plan ends; without a plan, where it stands. The
+            robot keeps it, the place of its task, and the place to which it has been sent, even if
+            no route to that place is planned yet.
         """
         goal = robot.task.place if robot.task is not None else -1
         left = [place for place in robot.places if place not in (robot.waypoint, rest, goal)]
@@ -175,7 +174,7 @@ class Storage:
         self._refresh(place)
 
     def robot_changed(self, robot: Robot) -> None:
-        """Update the state of places after a robot has got work or become free."""
+        """Update which pods are available, after a robot has got work or become free."""
         for place in robot.places:
             self._refresh(place)
 

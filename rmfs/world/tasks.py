@@ -1,8 +1,8 @@
 """Tasks of robots: one class for each kind of task.
 
-Every task is a trip, with or without a pod, to a station or to a storage location (*place*). A kind
-defines when a task is possible, what the world reserves at its start, and what it releases at its
-end.
+Every task takes a robot, with or without a pod, to a station or to a storage location (*place*); a
+robot may also rest at another waypoint. A kind defines when a task is possible, what the world
+reserves when the task starts, and what the world releases when it ends.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Keeps(Protocol):
 
 
 class Pick(NamedTuple):
-    """A unit to be picked, and whether it was bound after the task of its pod had begun."""
+    """A unit to be picked from a pod, and whether it was bound after the pod's task had begun."""
 
     line: OrderLine
     late_bound: bool
@@ -87,7 +87,8 @@ class Task:
     station
         The station to which the robot goes; -1 for none.
     place
-        The waypoint where the pod is stored or the robot rests; -1 for none.
+        The waypoint at which the pod is to be stored or the robot is to rest; -1 for none, and
+        while it is still to be chosen.
     """
 
     kind: ClassVar[str]
@@ -113,7 +114,7 @@ class Task:
         raise NotImplementedError
 
     def ended(self, world: Keeps) -> None:
-        """Release what the world reserved."""
+        """Release what the world reserved for the task; by default do nothing."""
 
     @property
     def stores(self) -> bool:
@@ -122,7 +123,7 @@ class Task:
 
     @property
     def lacks_place(self) -> bool:
-        """Whether the storage location of the pod is still to be chosen."""
+        """Whether the storage location to which the pod goes is still to be chosen."""
         return self.place < 0 and self.station < 0
 
 
@@ -153,7 +154,7 @@ class PickTask(StationTask):
     picks: deque[Pick] = field(default_factory=deque)
 
     def started(self, world: Keeps) -> Task:
-        """Claim the pod, and bind to it all open requests that it can serve at the station."""
+        """Claim the pod; bind to it all open requests of the station's orders that it can serve."""
         return world.start_pick(world.robots[self.robot], self.pod, self.station)
 
     def ended(self, world: Keeps) -> None:
@@ -163,7 +164,7 @@ class PickTask(StationTask):
 
     @property
     def can_pick(self) -> bool:
-        """Whether any pick is for an order with a slot at the station, not just one in its pool."""
+        """Whether any pick is for an order with a slot at the station, not for one in its pool."""
         return any(pick.line.order.station >= 0 for pick in self.picks)
 
 
@@ -189,8 +190,8 @@ class ReplenishTask(StationTask):
 class VisitTask(StationTask):
     """The task of bringing a pod to a station other than a pick or replenishment station.
 
-    Each kind of station derives its own class. The controller of the stations decides whether a
-    visit is needed. The task is possible if the pod is available or already carried.
+    A kind of station may derive its own class from this one. The controller of the stations decides
+    whether a visit is needed. The task is possible if the pod is available or already carried.
     """
 
     kind = "visit"

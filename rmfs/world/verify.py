@@ -1,4 +1,4 @@
-"""Consistency checks by recounting: conservation of stock and requests, and derived counts."""
+"""Consistency checks: stock and requests are conserved, and stored counts agree with recounts."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def verify(world: World, orders: Iterable[Order] = ()) -> None:
     Raises
     ------
     AssertionError
-        If a count is wrong; the message names the first one.
+        If the state is not consistent; the message names the first check that fails.
     """
     _stock(world)
     _requests(world)

@@ -1,4 +1,4 @@
-"""The world: the operations that change the state, each of which keeps all counts consistent."""
+"""The world: a warehouse and the operations that change it; each keeps all counts consistent."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class World(OrderOperations):
     """A warehouse and the operations that change it.
 
-    Operations raise ValueError if they would break a rule (a pod claimed twice, a unit bound twice,
-    a station overfilled); decisions must respect these rules.
+    An operation raises ValueError if it is not allowed, for example if it would let two robots
+    claim a pod, bind a unit twice or overfill a station. Decisions must avoid such operations.
     """
 
     # --- stock and work that appear ---------------------------------------------------------
@@ -31,7 +31,7 @@ class World(OrderOperations):
         self.units_initial += sum(units)
 
     def add_bundle(self, bundle: Bundle) -> None:
-        """Add a bundle to the backlog."""
+        """Add a bundle to the backlog of bundles, which are not yet assigned to a station."""
         self.bundles.add(bundle)
         self.bundles_created += 1
         self.unstored_space += bundle.space
@@ -40,7 +40,10 @@ class World(OrderOperations):
     # --- bundles --------------------------------------------------------------------------------
 
     def promise(self, bundle: Bundle, pod: int) -> None:
-        """Reserve room on the pod that RPS has chosen for a bundle, which is not released yet."""
+        """Reserve room for a bundle on the pod that RPS has chosen.
+
+        The bundle is assigned once RPS has also released it and ROA has chosen its station.
+        """
         if bundle.pod >= 0:
             raise ValueError(f"bundle {bundle.index} has pod {bundle.pod} already")
         self.inventory.promise(pod, bundle.space)
@@ -48,7 +51,10 @@ class World(OrderOperations):
         self.bundles.promised(bundle, self.now_s)
 
     def release_bundles(self, pod: int) -> list[Bundle]:
-        """Release the bundles promised to a pod; return those that are now assigned."""
+        """Release the bundles promised to a pod; return those that are thereby assigned.
+
+        Bundles for which ROA has already chosen a station are assigned to it.
+        """
         bundles = self.bundles.release(pod)
         for bundle in bundles:
             bundle.released = True
@@ -58,7 +64,7 @@ class World(OrderOperations):
         return assigned
 
     def choose_station(self, bundle: Bundle, station: int) -> bool:
-        """Reserve station space for a bundle (the choice of ROA).
+        """Reserve space for a bundle at the replenishment station that ROA has chosen.
 
         Returns
         -------
@@ -88,7 +94,8 @@ class World(OrderOperations):
     def start_pick(self, robot: Robot, pod: int, station: int) -> PickTask:
         """Start the task of bringing a pod to a pick station.
 
-        All open requests of the station's open orders that the pod can serve are bound to the pod.
+        The open requests of the station's open orders are bound to the pod as far as its available
+        stock suffices.
         """
         task = PickTask(robot.index, pod, station)
         self._begin_pod_task(robot, task)
@@ -111,14 +118,15 @@ class World(OrderOperations):
     def extend_queued(
         self, task: PickTask, order: Order, *, whole: bool, late_bound: bool = True
     ) -> int:
-        """Bind open requests of an order in a station's pool to the pod of a task; return how many.
+        """Bind open requests of an order to the pod of a task; return how many.
 
-        None are bound if the pod is already at the head of the station's queue.
+        The order is in the pool of the task's station. Nothing is bound if the pod is already at
+        the head of the station's queue.
 
         Parameters
         ----------
         whole
-            Whether to bind requests only if the pod serves all open requests of the order.
+            Whether to bind requests only if the pod can serve all open requests of the order.
         """
         if self.robots[task.robot].station == task.station:
             return 0
@@ -176,7 +184,7 @@ class World(OrderOperations):
         return task
 
     def start_park(self, robot: Robot, place: int) -> Task:
-        """Start the task of storing the carried pod at an empty place."""
+        """Start the task of storing a robot's pod at an empty storage location."""
         task = ParkTask(robot.index, robot.pod, place=place)
         if self.storage.pod_at[place] >= 0:
             raise ValueError(f"place {place} holds pod {self.storage.pod_at[place]}")
@@ -185,7 +193,7 @@ class World(OrderOperations):
         return task
 
     def start_reposition(self, robot: Robot, pod: int, place: int) -> Task:
-        """Start the task of fetching a pod and storing it at an empty place."""
+        """Start the task of fetching a pod and storing it at an empty storage location."""
         if robot.pod >= 0:
             raise ValueError(f"robot {robot.index} carries pod {robot.pod} already")
         if self.storage.pod_at[place] >= 0:
@@ -196,14 +204,14 @@ class World(OrderOperations):
         return task
 
     def start_rest(self, robot: Robot, place: int) -> Task:
-        """Start the task of resting at a place, beneath a stored pod or not."""
+        """Start the task of resting at a waypoint, possibly beneath a stored pod."""
         task = RestTask(robot.index, place=place)
         self.storage.keep(robot, place)
         self._set_task(robot, task)
         return task
 
     def end_task(self, robot: Robot) -> None:
-        """End the task of a robot; a pod it carries stays claimed by it."""
+        """End the task of a robot; if it carries a pod, the pod stays claimed by the robot."""
         if robot.task is not None:
             robot.task.ended(self)
         self._set_task(robot, None)
@@ -238,14 +246,12 @@ class World(OrderOperations):
         self.storage.set_down(pod, place)
 
     def pick_unit(self, task: PickTask, chosen: Pick | None = None) -> Pick:
-        """Pick the next unit of a task, and return it.
-
-        Units of orders that have no slot at the station yet are passed over.
+        """Pick a unit of a task, and return it.
 
         Parameters
         ----------
         chosen
-            The unit of the task to be picked. Default: the next one.
+            The unit to be picked. Default: the next one whose order has a slot at the station.
         """
         picks = task.picks
         pick = picks[0] if chosen is None else chosen
@@ -264,7 +270,7 @@ class World(OrderOperations):
         return pick
 
     def store_bundle(self, task: ReplenishTask) -> Bundle:
-        """Store the next bundle of a task in its pod; return the bundle."""
+        """Store the next bundle of a task in the task's pod; return the bundle."""
         bundle = task.bundles.popleft()
         self.inventory.store(task.pod, bundle.sku, bundle.units)
         station = self._replenishment_station(task.station)

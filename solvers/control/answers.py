@@ -26,7 +26,7 @@ def answer(
     values
         Values of the solution as plain arrays and numbers; None if no solution was found.
     scale
-        Number by which the absolute gap is divided to give the relative one. Default: the
+        Number by which the absolute gap is divided to give the relative gap. Default (nan): the
         absolute value of the objective.
     """
     return Answer(

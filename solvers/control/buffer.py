@@ -10,12 +10,12 @@ if TYPE_CHECKING:
 
 
 class Buffer:
-    """Lets a controller ask at most once per `buffer_s`.
+    """Lets a controller ask its optimiser at most once in `buffer_s` seconds (the buffer time).
 
     Parameters
     ----------
     view
-        The view, which provides the clock.
+        The controller's view of the world, which provides the clock.
     buffer_s
         Minimum number of seconds between two questions.
     """
@@ -27,7 +27,10 @@ class Buffer:
         self._wanted = False
 
     def is_over(self, wanted: bool = True) -> bool:
-        """Return whether to ask now; a question wanted too early is due at `next_event_s`.
+        """Return whether to ask now: there is something to ask, and the buffer time is over.
+
+        If there is something to ask but the buffer time is not over, `next_event_s` is then the end
+        of the buffer time.
 
         Parameters
         ----------
@@ -44,7 +47,7 @@ class Buffer:
         Parameters
         ----------
         again
-            Whether to ask again as soon as the buffer time is over. Default: only after an event.
+            Whether to ask again at the end of the buffer time even if no event occurs until then.
         """
         self._asked_s = self._view.now_s
         self._wanted = again

@@ -20,13 +20,16 @@ _PRIOR_H = 0.1
 
 
 class Foresight:
-    """Forecasts the visits of pods to pick stations; a forecast is kept for `kept_s`.
+    """Forecasts the visits of pods to pick stations; a forecast is kept for `kept_s` seconds.
 
-    Units needed within the horizon are those ordered and not yet picked, and those of new orders.
-    New orders are expected to ask for as many units per hour as have been picked per hour so far,
-    distributed over SKUs in proportion to the units ordered so far. To stabilise the estimate at
-    the beginning, six minutes of uninterrupted picking and twenty visits of two units each are
-    counted in advance.
+    The units needed within the horizon are those ordered and not yet picked, and those of new
+    orders. The pods are expected to supply them in proportion to their stock, `pile_on` units per
+    visit. New orders are expected to ask for as many units per hour as have been picked per hour so
+    far, distributed over SKUs in proportion to the units ordered so far.
+
+    To stabilise the estimates at the beginning, fictitious observations are added: to the units
+    picked per hour, six minutes in which all pick stations pick without a pause; to the units
+    picked per visit, twenty visits of two units each.
 
     Parameters
     ----------
@@ -52,7 +55,7 @@ class Foresight:
 
     @property
     def units_per_h(self) -> NDArray[np.float64]:
-        """Expected units ordered per SKU, shape (K,), in 1/h."""
+        """Expected number of units of each SKU ordered per hour, shape (K,)."""
         units = self._frequency.units
         hours = (self._view.now_s - self._before_s) / 3600.0
         picked = self._picked() - self._before_units + _PRIOR_H * self._most_per_h
@@ -61,14 +64,14 @@ class Foresight:
 
     @property
     def pile_on(self) -> float:
-        """Units picked per visit so far, including the visits counted in advance; at least 1."""
+        """Units picked per visit so far, including the fictitious visits; at least 1."""
         visits = sum(station.visits for station in self._view.pick_stations)
         units = _PRIOR_VISITS * _PRIOR_PILE_ON + self._picked()
         return max(1.0, float(units / (_PRIOR_VISITS + visits)))
 
     @property
     def visits_per_h(self) -> NDArray[np.float64]:
-        """Expected visits of each pod to pick stations, shape (P,), in 1/h."""
+        """Expected number of visits per hour of each pod to pick stations, shape (P,)."""
         now_s = self._view.now_s
         if self._rate_per_h is None or now_s >= self._found_s + self._kept_s:
             inventory = self._view.inventory

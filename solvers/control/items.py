@@ -50,14 +50,17 @@ class Item:
 
 
 def servable(view: View, split: bool, splitting: Splitting | None = None) -> list[Item]:
-    """Return waiting orders, or lines, that stock can serve, in order of arrival.
+    """Return the items of the backlog that stock can serve, in order of arrival.
+
+    Each item is compared, as if it were the only one, with the stock that orders at stations do not
+    need.
 
     Parameters
     ----------
     split
-        Whether orders may be split; each of their lines is then an item.
+        Whether orders may be split; each line of an order that may be split is then an item.
     splitting
-        Which orders may be split; the others remain whole. Default: all.
+        With `split`, determines which orders may be split; the others remain whole. Default: all.
     """
     orders, stock = view.orders, view.inventory.free_stock
     if split:

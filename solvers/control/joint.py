@@ -29,9 +29,10 @@ P = TypeVar("P", bound=Parameters)
 class JointAllocation(TaskAllocation[P]):
     """A TA controller whose model assigns orders and pods to pick stations, and robots to the pods.
 
-    Other decisions are made by rules: a robot sent for bundles goes to the nearest replenishment
-    station with work, with a pod chosen by PPS lexicographic; idle robots rest by the rest rule.
-    Answers are stored as a plan, and no other controller takes part in carrying it out.
+    Other decisions are made by rules: for replenishment, a robot brings a pod chosen by PPS
+    lexicographic to the nearest replenishment station with work; idle robots rest where the rest
+    rule `rest` sends them. Answers are stored in a plan, which is carried out without other
+    controllers.
     """
 
     goes_on = True
@@ -44,7 +45,8 @@ class JointAllocation(TaskAllocation[P]):
     def is_modelled(self, decision: Any) -> bool:
         """Whether the model makes decisions of this kind.
 
-        It assigns orders to pick stations, and has pods fetched for picks.
+        Such decisions assign an order or its lines to a pick station, or send a robot without a pod
+        to fetch one for picks.
         """
         if isinstance(decision, BringForPicks):
             return decision.robot.pod < 0

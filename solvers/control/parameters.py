@@ -27,5 +27,5 @@ class SearchParameters(BufferParameters):
 
     @property
     def limits(self) -> Limits:
-        """Return these values as limits of a model."""
+        """Return `work_s` and `gap` as limits of a model."""
         return Limits(deterministic_s=self.work_s, gap=self.gap)

@@ -1,13 +1,14 @@
-"""Determines which orders may be split, within the capacity of the put wall and a given limit.
+"""Determines which orders may be split: as many as the put wall, or a given limit, allows.
 
-A split order needs a slot of the wall for each of its totes but one, or, if its totes share a slot,
-a single one. The number of totes is known only when the last line has a station, so each line
-without a station counts as a separate tote. An order that is split within this capacity therefore
-never finds the wall full, and no pick station is blocked because of the wall.
+A split order needs slots of the wall: one for each of its totes except the last or, if the totes of
+an order share a slot, just one. The number of totes is known only when the last line has a station,
+so each line without a station counts as a separate tote. Orders that are split within the capacity
+of the wall therefore never find it full, and no pick station is blocked because of the wall.
 
-If the capacity does not suffice for all orders, orders are ranked by the number of lines that pods
-under way serve at one station, per slot needed. Orders that such pods serve completely need no
-split, and orders that they do not serve at all would not benefit from one now.
+If not all orders can be split, each is ranked by the number of its lines that pods under way to one
+station can serve, divided by the number of slots of the wall that the order needs. An order that
+these pods can serve completely need not be split, and an order of which they can serve no line
+would not benefit from being split now.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class Splitting:
     planned
         Orders of the backlog with lines planned for stations.
     pays
-        Returns whether splitting an order is worth its cost; None: always.
+        Function that returns whether it is worth its cost to split an order; None: it always is.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""RPS stocking: chooses pods and stations of bundles by the robot time saved later."""
+"""RPS stocking: chooses pods and stations for bundles so that most robot time is saved."""
 
 from __future__ import annotations
 
@@ -50,7 +50,8 @@ class Question:
     Attributes
     ----------
     method
-        `cp_sat`, `highs` or `rounding`, each starting from the greedy rule, or `greedy` alone.
+        `greedy` (the greedy rule), `cp_sat` or `highs` (both start from its solution), or
+        `rounding`.
     """
 
     data: Replenishment
@@ -93,13 +94,14 @@ class StockingParameters(SearchParameters):
 
 
 class StockingControl(ReplenishmentPodSelection[StockingParameters]):
-    """Decides jointly in which pods and at which stations bundles are stored; ROA must be `dummy`.
+    """Decides jointly in which pods bundles are stored, and at which replenishment stations.
 
-    The value of a bundle is the robot time that its units will save by raising the pile-on. This
-    value is high if the bundle's SKU is in demand and scarce, and higher in a pod with SKUs that
-    are ordered together with the bundle's SKU. It is weighed against the pod's trip to a station
-    with room; the trip counts once for all bundles of the pod, and is free if the pod is brought to
-    that station anyway. The optimiser is asked when bundles wait and a station has room, at most
+    The ROA controller must be `dummy`. The value of a bundle in a pod is the robot time that its
+    units will save by raising the pile-on. This value is high if the bundle's SKU is in demand and
+    the pod holds few units of it, and higher if SKUs of the pod are often ordered together with the
+    bundle's SKU. The value is weighed against the pod's trip to a station with room for the bundle;
+    the trip counts once for all bundles of the pod, and is free if the pod is brought to that
+    station anyway. The optimiser is asked when bundles wait and a station has room, at most
     once per `buffer_s`; if it fails, the greedy rule decides.
     """
 
@@ -122,7 +124,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Told]:
-        """Ask the optimiser when bundles wait, a station has room, and the buffer time is over."""
+        """Ask the optimiser if bundles wait, a station has room, and the buffer time is over."""
         if self._buffer.is_over(not self.in_flight and self._is_possible()):
             self._buffer.begin(again=True)
             yield self._question()

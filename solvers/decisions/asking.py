@@ -1,4 +1,4 @@
-"""Conversion of a controller's question to a `Decision`, and solving it again as in the run."""
+"""Converts questions of controllers to `Decision`s, and solves these again as in the run."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def asked_again(decision: Decision, where: str = "") -> Found:
     Raises
     ------
     InputError
-        If the asking controller is unknown, or the data saved with the question are invalid.
+        If the controller that asked is unknown, or the saved data or settings are invalid.
     """
     name, data = where or decision.name, model_data(decision, where)
     by = decision.asked.get("by")
@@ -88,7 +88,7 @@ def asked_again(decision: Decision, where: str = "") -> Found:
 
 
 def found_of(family: str, given: Answer) -> Found:
-    """Convert an optimiser's answer in a run to a `Found`."""
+    """Convert an optimiser's answer to a question of the given family to a `Found`."""
     by = {"backend": given.backend, "status": given.status, "work": given.work}
     by |= {"wall_s": given.wall_s, "build_s": given.build_s, "built": given.built}
     values = None if given.found is None else plain_values(family, given.found)

@@ -1,4 +1,4 @@
-"""Proven bounds of a question by several methods; the best one counts."""
+"""Proven bounds on the objective of a question, by several methods; the best bound counts."""
 
 from __future__ import annotations
 
@@ -86,7 +86,9 @@ def best(
     guard_s: float | None = None,
     search: bool = True,
 ) -> tuple[str, float]:
-    """Return the name of the method with the best bound, and this bound; without any, "" and nan.
+    """Return the name of the method with the best bound, and this bound.
+
+    Without any bound, these are "" and nan.
 
     Parameters
     ----------

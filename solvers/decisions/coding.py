@@ -3,7 +3,8 @@
 Integers stay integers. Other numbers are written with the fewest digits that read back as the same
 double (Python's `repr`), and as `"inf"` or `"-inf"` if they are infinite. A large array with mostly
 equal entries, or one without rows, is written as `{"shape": [...], "all": V, "at": [...], "values":
-[...]}`, with positions counted row by row.
+[...]}`: all entries are V, except those at the positions `at`, counted row by row, which are given
+in `values`.
 """
 
 from __future__ import annotations
@@ -84,9 +85,9 @@ def decoded(
     where
         Name of the file or object, for errors.
     schema
-        The family.
+        Definition of the family's fields.
     part
-        `data` or `values`.
+        `data` for a question, `values` for an answer.
     raw
         The parsed JSON.
     known
@@ -282,5 +283,5 @@ def _check_shapes(
 
 
 def sizes_of(family: str, data: Plain) -> dict[str, int]:
-    """Return the sizes of a question's dimensions by letter."""
+    """Return the sizes of a question's dimensions, by the letters that name them in the schema."""
     return sizes(SCHEMAS[family], data)

@@ -59,7 +59,7 @@ def solve(
     ] = 60.0,
     out: Annotated[
         Path,
-        typer.Option(help="Folder for the solution files, which are named by their questions."),
+        typer.Option(help="Folder for the solution files, named after their questions."),
     ] = Path("results/solutions"),
 ) -> None:
     """Solve questions and write a solution file for each."""
@@ -90,7 +90,7 @@ def check(
         Path, typer.Argument(metavar="SOLUTION", help="Solution file, from any source.")
     ],
 ) -> None:
-    """Verify a solution without the models, and compute its value; exit code 2 if wrong."""
+    """Verify a solution by an independent check, and compute its value; exit code 2 if wrong."""
     from rmfs.solvers.decisions.checking import WrongError
     from rmfs.solvers.decisions.checking import check as checked
     from rmfs.solvers.decisions.files import read_solution
@@ -108,7 +108,7 @@ def bound(
     files: Files,
     work: Annotated[float, typer.Option(min=0.0, help=WORK)] = 1.0,
 ) -> None:
-    """Prove bounds by Lagrangian prices, relaxation and search.
+    """Prove bounds on objectives by Lagrangian relaxation, linear relaxation and exact search.
 
     The last line about each question states its best bound.
     """
@@ -139,7 +139,7 @@ def convert(
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("results/exact"),
 ) -> None:
-    """Write the exact program for any MIP solver, with a key to its columns; or read a solution."""
+    """Write exact programs with maps of their columns, or convert the solution file of a solver."""
     from rmfs.solvers.decisions.exact import exact
     from rmfs.solvers.decisions.exact.reading import answer_of
     from rmfs.solvers.decisions.exact.writing import write_map, write_program
@@ -173,10 +173,12 @@ def profile(
         typer.Option(help="Method; may be repeated. [default: all methods of the family]"),
     ] = None,
     work: Annotated[float, typer.Option(min=0.001, help=f"Largest limit. {WORK}")] = 1.0,
-    seeds: Annotated[int, typer.Option(min=1, help="Number of seeds per method, from 0.")] = 1,
+    seeds: Annotated[
+        int, typer.Option(min=1, help="Number of seeds per method, counted from seed 0.")
+    ] = 1,
     out: Annotated[Path, typer.Option(help="Table (CSV).")] = Path("results/profile.csv"),
 ) -> None:
-    """Run methods with doubling limits, and write values, gaps and times."""
+    """Run methods, doubling the limit of work each time, and write values, gaps and times."""
     import pandas as pd
 
     from rmfs.files import write_text
@@ -244,7 +246,7 @@ def draw(
     family: Family = None,
     size: Size = None,
 ) -> None:
-    """Redraw the questions of the library from runs, by the documented procedure."""
+    """Simulate the sites of the library again, and draw its questions from these runs."""
     from rmfs.solvers.decisions.files import write
     from rmfs.solvers.decisions.library.drawing import draw
     from rmfs.solvers.decisions.library.sites import SITES
@@ -284,7 +286,7 @@ def improve(
         float, typer.Option(min=0.01, help="Deterministic seconds per search in the first round.")
     ] = 1.0,
     rounds: Annotated[
-        int, typer.Option(min=1, help="Rounds, each with four times the work of the last.")
+        int, typer.Option(min=1, help="Rounds, each with four times the work of the one before.")
     ] = 1,
     seconds: Annotated[float, typer.Option(min=1.0, help="Total wall time.")] = math.inf,
     load: Annotated[
@@ -294,7 +296,7 @@ def improve(
         float, typer.Option(min=1.0, help="Wall time after which a search is given up.")
     ] = 120.0,
 ) -> None:
-    """Search for better values and bounds of the library, within the given time."""
+    """Search for better values and bounds of the questions in the library, within a given time."""
     import os
 
     from rmfs.solvers.decisions.library.improving import Effort

@@ -1,4 +1,4 @@
-"""Decision files and solution files: validated when read, and written atomically."""
+"""Files of questions and files of answers: validated when read, and written atomically."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Found:
     values
         Fields of the answer; None if there is no answer.
     objective, bound
-        As stated by the solver; nan if unknown.
+        Value of the answer and proven bound, as stated by the solver; nan if unknown.
     by
         How the answer was found: method, seed, limits, status, work, ...
     """
@@ -54,7 +54,7 @@ class Found:
 
 @dataclass(frozen=True, eq=False)
 class Decision:
-    """A saved question.
+    """A question to an optimiser, in the form in which it is saved.
 
     Attributes
     ----------
@@ -65,8 +65,8 @@ class Decision:
     provenance
         Where the question comes from: run, simulated time, decision problem, controller.
     asked
-        How a controller asked the question: the name of the controller's module (`by`), and the
-        settings passed along with the data. Empty if no controller asked it.
+        How a controller asked the question: the name of the controller's module in `asking`
+        (`by`), and the settings passed along with the data. Empty if no shipped controller asked.
     recorded
         The answer given in the run, if there was one.
     """
@@ -104,11 +104,11 @@ class Decision:
 
 
 def write(decision: Decision, folder: Path) -> bool:
-    """Write a question into a folder, atomically, compressed and named by its content.
+    """Write a question to a folder, as a compressed file that is named by `Decision.name`.
 
     Returns
     -------
-    Whether the question is new. A question that already exists in the folder is not changed.
+    Whether the file is new. If the folder already contains the question, nothing is written.
     """
     path = folder / f"{decision.name}.json.gz"
     if path.exists():
@@ -118,7 +118,7 @@ def write(decision: Decision, folder: Path) -> bool:
 
 
 def write_to(decision: Decision, path: Path) -> None:
-    """Write a question to a file; compressed if its name ends in `.gz`."""
+    """Write a question to a file, which is compressed if the path ends in `.gz`."""
     told: dict[str, Any] = {
         "format": QUESTION,
         "family": decision.family,
@@ -134,7 +134,7 @@ def write_to(decision: Decision, path: Path) -> None:
 
 
 def write_solution(decision: Decision, found: Found, path: Path) -> None:
-    """Write an answer to a file; compressed if its name ends in `.gz`."""
+    """Write an answer to a file, which is compressed if the path ends in `.gz`."""
     head = {"format": SOLUTION, "family": decision.family, "question": decision.hash}
     _write(path, {**head, **_told(decision.schema, found)})
 
@@ -145,7 +145,7 @@ def read(path: Path) -> Decision:
     Raises
     ------
     InputError
-        If the file is not a question, or its content does not match its hash.
+        If the file is not a question, or its data do not match the hash that it states.
     """
     raw = _read(path, QUESTION)
     family = raw.get("family")
@@ -187,7 +187,7 @@ def question_named(path: Path) -> str:
     Raises
     ------
     InputError
-        If the file is not a solution.
+        If the file is not a solution file.
     """
     raw = _read(path, SOLUTION)
     return f"{raw.get('family')}-{str(raw.get('question'))[:NAMED_BY]}"

@@ -1,4 +1,4 @@
-"""Conversion between the plain fields of a file and the dataclasses of the models."""
+"""Conversion of the fields of questions and answers to the dataclasses of models, and back."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ _PARTS = {
 
 
 def family_of(data: object) -> str | None:
-    """Return the name of the family to which model data belong; None if there is none."""
+    """Return the name of the family to which a model's data belong; None if they belong to none."""
     for name, kind in DATA.items():
         if type(data).__name__ == kind and isinstance(data, getattr(model(name), kind)):
             return name
@@ -65,12 +65,12 @@ def family_of(data: object) -> str | None:
 
 
 def plain_data(family: str, data: object) -> Plain:
-    """Return the plain fields of a model's data."""
+    """Return the fields of a question from a model's data."""
     return {field.name: _taken(data, field) for field in SCHEMAS[family].data}
 
 
 def plain_values(family: str, values: object) -> Plain:
-    """Return the plain fields of a model's values."""
+    """Return the fields of an answer from a model's values."""
     named = SCHEMAS[family].values
     if family not in _VALUES:
         return {named[0].name: np.asarray(values)}
@@ -78,12 +78,12 @@ def plain_values(family: str, values: object) -> Plain:
 
 
 def model_data(decision: Decision, where: str = "") -> Any:
-    """Build the model's data from plain fields.
+    """Build the model's data from the fields of a question.
 
     Raises
     ------
     InputError
-        If the model rejects them.
+        If the model rejects the data.
     """
     module = model(decision.family)
     nested: dict[str, Any] = {}
@@ -102,7 +102,7 @@ def model_data(decision: Decision, where: str = "") -> Any:
 
 
 def model_values(decision: Decision, values: Plain) -> Any:
-    """Build the model's values from plain fields."""
+    """Build the model's values from the fields of an answer to a question."""
     if decision.family not in _VALUES:
         return np.asarray(next(iter(values.values())))
     kind = getattr(
@@ -139,7 +139,7 @@ def _taken(owner: Any, field: Field) -> Any:
 
 
 def plain_of(value: Any) -> Any:
-    """Convert settings passed along with a question, such as limits, to JSON."""
+    """Convert a setting passed along with a question, such as limits, to what JSON can store."""
     if is_dataclass(value) and not isinstance(value, type):
         return {one.name: plain_of(getattr(value, one.name)) for one in fields(value)}
     if isinstance(value, np.ndarray):

@@ -1,12 +1,13 @@
 """Quality of answers over work: anytime profiles, primal gaps and primal integrals.
 
-Methods are deterministic: the best answer after the work W is the answer found under the limit W.
-So a profile is a sequence of separately timed runs with doubling limits.
+Methods are deterministic, so the best answer after work W is the answer of a run with the limit W.
+A profile therefore consists of separately timed runs, each with twice the limit of the one before.
 
 The primal gap of a value v against the best known one b is 0 if both are 0, 1 if their signs
 differ, and ``|v - b| / max(|v|, |b|)`` otherwise; it is 1 while there is no value (Berthold 2013,
-Measuring the impact of primal heuristics). The primal integral is the integral of the gap over
-time up to the end of the longest run, as a share of that time: 0 is perfect, 1 is nothing found.
+Measuring the impact of primal heuristics). The primal integral is the mean of the gap over time,
+from 0 to the end of the longest run of any method, or over work, from 0 to the method's largest
+limit: 0 is perfect, 1 means that nothing was found.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ UNLIMITED = frozenset(
 def limits(method: str, most: float) -> list[float]:
     """Return limits of work, each twice the one before, up to `most`.
 
+    For methods that ignore limits (`UNLIMITED`), return only `most`.
+
     Parameters
     ----------
     method
@@ -55,7 +58,7 @@ def limits(method: str, most: float) -> list[float]:
 def points(
     decision: Decision, method: str, most: float, seeds: Sequence[int] = (0,)
 ) -> Iterator[dict[str, Any]]:
-    """Solve a question under every limit and seed, and yield a row for each.
+    """Solve a question with each limit of `limits` and each seed, and yield a row for each run.
 
     Parameters
     ----------
@@ -91,14 +94,14 @@ def points(
 
 
 def primal_gap(value: float, best: float) -> float:
-    """Return the primal gap of a value; 1 for nan.
+    """Return the primal gap of a value; 1 if the value or the best known one is nan.
 
     Parameters
     ----------
     value
         The value found; nan if none was.
     best
-        The best known value.
+        The best known value; nan if none is known.
     """
     if math.isnan(value) or math.isnan(best):
         return 1.0
@@ -110,12 +113,13 @@ def primal_gap(value: float, best: float) -> float:
 
 
 def primal_integral(steps: Iterable[tuple[float, float]], end: float) -> float:
-    """Return the mean primal gap from 0 to the end.
+    """Return the primal integral: the mean of the smallest gap so far, from 0 to the end.
 
     Parameters
     ----------
     steps
-        Pairs of a time (or work) and the primal gap from then on, in any order.
+        Pairs of a time (or amount of work) and the primal gap of the answer found by then, in any
+        order. Before the first, the gap is 1.
     end
         End of the integral; positive.
     """

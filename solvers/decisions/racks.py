@@ -1,15 +1,14 @@
 """Reader for files of Valle and Beasley (2021): racks, products and orders.
 
-A file names its sizes (`N` products, `R` racks, `O` orders, `RS` shelves of a rack), and then lists
+A file states its sizes (`N` products, `R` racks, `O` orders, `RS` shelves of a rack), then lists
 
 - below `Racks`, one row per rack: its index, and the product and quantity on each of its shelves;
-- below `Orders`, one row per order: its index, its number of items, and the product of each item,
-  repeated for each unit.
+- below `Orders`, one row per order: its index, its number of units, and the product of each unit.
 
 The format is described by the authors
 (homepages.dcc.ufmg.br/~arbex/mobileRacks/rackInstancesDescription.txt); their files are not
-included here. A file does not contain the number of pickers and of orders per picker; the caller
-states them.
+included here. The number of pickers and the number of orders per picker are not in the file; the
+caller states both.
 """
 
 from __future__ import annotations
@@ -42,15 +41,15 @@ def read_racks(path: Path, pickers: int, orders_each: int) -> Decision:
     path
         The file.
     pickers
-        Number of pickers (stations here), at least 1.
+        Number of pickers, at least 1. In rmfs, each picker is a station.
     orders_each
         Number of orders per picker, at least 1.
 
     Raises
     ------
     InputError
-        If the file cannot be read or is not as described, or has fewer orders than the pickers
-        take.
+        If the file cannot be read, is not as described, or has fewer than `pickers` times
+        `orders_each` orders.
     """
     sizes: dict[str, int] = {}
     tables: dict[str, dict[int, tuple[int, list[int]]]] = {RACKS: {}, ORDERS: {}}

@@ -20,14 +20,14 @@ MAXIMISED = frozenset({"run_bound"})
 
 
 def with_gaps(table: pd.DataFrame, best: Mapping[str, float] | None = None) -> pd.DataFrame:
-    """Add the best value of each question and the primal gap to it.
+    """Return the table with two more columns: the best value of the question, and the primal gap.
 
     Parameters
     ----------
     table
         Rows of `profiling.points`.
     best
-        Best known value by question, used unless the table contains a better one.
+        Best known value of each question, by name; a better one in the table takes precedence.
     """
     known = dict(best or {})
     sign = np.where(table["family"].isin(MAXIMISED), -1.0, 1.0)
@@ -46,8 +46,9 @@ def with_gaps(table: pd.DataFrame, best: Mapping[str, float] | None = None) -> p
 def integrals(table: pd.DataFrame) -> pd.DataFrame:
     """Return primal integrals over wall time and over work for each question, method and seed.
 
-    The integral over time ends at the duration of the longest run on the question by any method;
-    that over work ends at the method's own largest limit, as methods count work in different units.
+    The integral over time ends at the duration of the longest run of any method on the question.
+    The integral over work ends at the method's own largest limit (or at its largest work, if that
+    is more), because methods count work in different units.
 
     Parameters
     ----------
@@ -73,14 +74,14 @@ def integrals(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def times_to_gap(table: pd.DataFrame, gap: float) -> pd.DataFrame:
-    """Return when each method first reaches a gap on each question, in s; inf: never.
+    """Return the wall time, in s, in which each method reaches a gap on each question; inf: never.
 
     Parameters
     ----------
     table
         As `with_gaps` returns it.
     gap
-        Primal gap that counts as solved.
+        Largest primal gap at which a question counts as solved.
 
     Returns
     -------
@@ -99,15 +100,15 @@ def performance(times: pd.DataFrame, ratios: Sequence[float]) -> pd.DataFrame:
     Parameters
     ----------
     times
-        As `times_to_gap` returns it; a question without an entry for a method is not counted for
-        that method.
+        As `times_to_gap` returns it.
     ratios
-        Multiples of the time of the quickest method.
+        Multiples of the shortest time in which any method solved a question.
 
     Returns
     -------
-    For each ratio (index) and method, the share of questions that the method solved within this
-    multiple of the quickest method's time. Questions that no method solved count as unsolved.
+    For each ratio (index) and method, the share of all questions that the method solved within
+    this multiple of the shortest time for the same question. A question that no method solved, or
+    for which there is no run of the method, counts as not solved by it.
     """
     quickest = times.min(axis=1)
     ratio = times.div(quickest, axis=0).where(np.isfinite(times), np.inf)
@@ -120,7 +121,8 @@ def data_profile(times: pd.DataFrame, seconds: Sequence[float]) -> pd.DataFrame:
     Parameters
     ----------
     times
-        As `times_to_gap` returns it.
+        As `times_to_gap` returns it; a question without a run of a method is not counted for that
+        method.
     seconds
         Wall times in s.
     """

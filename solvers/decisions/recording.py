@@ -46,12 +46,12 @@ class QuestionListener(Observer):
         self._open[call.number] = call
 
     def optimiser_answered(self, call: Call) -> None:
-        """Convert the question and its answer, and pass them to `take`."""
+        """Convert the question with its answer, and pass it to `take`."""
         self._open.pop(call.number, None)
         self._told(call)
 
     def run_ended(self, time_s: float) -> None:
-        """Convert the questions whose answers had not taken effect by then; pass them to `take`."""
+        """Convert the questions that are still without an answer, and pass them to `take`."""
         for call in self._open.values():
             self._told(call)
         self._open.clear()
@@ -94,7 +94,7 @@ class DecisionRecorder(QuestionListener):
     Attributes
     ----------
     written
-        Number of files written, without those that already existed.
+        Number of files written; questions whose files already existed do not count.
     """
 
     def __init__(self, folder: Path, run: Mapping[str, Any]) -> None:

@@ -1,7 +1,7 @@
-"""Definition of the questions and answers of each family (`rmfs-decision/1`).
+"""The fields of the questions and answers of each family, in the format `rmfs-decision/1`.
 
-This is the definition of the format. It imports no model, so checking an answer does not rely on
-a model.
+This module defines the format. It imports no model, so that answers can be checked independently of
+the models.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class Field:
     Attributes
     ----------
     name
-        Its name; a field of a part is named PART.NAME, as in `weights.travel`.
+        Its name; a field that belongs to a group has the name GROUP.NAME, such as `weights.travel`.
     kind
         Kind of its entries.
     shape
@@ -73,8 +73,8 @@ class Schema:
     data, values
         Fields of a question, and of an answer.
     derived
-        By letter, functions that return the sizes of dimensions that the shapes of the fields may
-        not show.
+        For dimensions that occur only in optional fields of the question: functions that compute
+        their sizes from other fields, by letter.
     maximise
         Whether the objective is maximised.
     """
@@ -86,7 +86,7 @@ class Schema:
 
 
 def fields_of(text: str) -> tuple[Field, ...]:
-    """Parse fields from lines `name | kind | shape | meaning`; `?` marks optional fields."""
+    """Parse fields from lines `name | kind | shape | meaning`; `name?` marks an optional field."""
     found = []
     for line in text.strip().splitlines():
         name, kind, shape, meaning = (part.strip() for part in line.split("|"))
@@ -128,14 +128,14 @@ SCHEMAS: Mapping[str, Schema] = {
         fields_of(
             f"""
 slots        | whole | S   | free order slots
-line_order   | whole | L   | order of each line, sorted, from 0 without gaps
+line_order   | whole | L   | number of the order of each line; ascending, from 0 without gaps
 line_sku     | whole | L   | SKU of each line, increasing within an order
 line_units   | whole | L   | units of each line
 stock        | whole | P K | unreserved units per pod and SKU
 travel       | real  | P S | cost of bringing a pod to a station
 available    | flag  | P   | whether a pod may be called
 inbound      | whole | P   | station that a pod is on its way to, or -1
-open_units   | whole | S K | units that orders at a station still need, per SKU
+open_units   | whole | S K | units that open orders of a station need and have not reserved, per SKU
 fetch?       | real  | R P | cost for a robot to reach a pod; without it, robots are not decided
 robot_pod?   | whole | R   | pod that a robot is bound to, or -1
 worth?       | real  | O   | extra reward for giving an order its first slot
@@ -150,7 +150,7 @@ slot         | flag  | O S | whether an order takes a slot at a station
 line_station | whole | L   | station whose pods cover a line now, or -1
 pod_station  | whole | P   | station that a pod is called to, or -1
 pod_robot    | whole | P   | robot that fetches a pod, or -1
-prospect     | whole | O   | station whose pods could fill an order without a slot, or -1
+prospect     | whole | O   | station whose pods could serve a prospect, or -1
 """
         ),
         {"O": _orders, "R": _robots},
@@ -162,7 +162,7 @@ slots         | whole | S   | order slots, 1 or more
 coming        | whole | F   | pods under way; those of a station in order of arrival
 coming_to     | whole | F   | station of each pod under way
 order_station | whole | O   | station at which an order is open, or -1 if it waits
-order_until   | whole | O   | last visit under way that brings units for an open order, or -1
+order_until   | whole | O   | last visit under way with units for an open order (position), or -1
 order_worth   | real  | O   | value of completing an order, s of robot time
 line_order    | whole | L   | order of each line
 line_sku      | whole | L   | SKU of each line
@@ -220,7 +220,7 @@ pod_station   | whole | P | station of a pod, or -1
         fields_of(
             """
 travel_s | cost | P L | travel time of a pod to a location, s
-access_s | real | L   | travel time of a later visit from a location, there and back, s
+access_s | real | L   | travel time of a later visit, from a location to a station and back, s
 visits   | real | P   | expected visits of a pod to stations from its new location
 """
         ),
@@ -242,11 +242,11 @@ capacity | whole | Z   | storage locations of a zone
     "zones": Schema(
         fields_of(
             """
-visit_s        | real | I J | robot time of a visit to a pod of a class in a zone, s
+visit_s        | real | I J | robot time of a visit of a pod of a class stored in a zone, s
 rate_per_h     | real | I   | visits per pod of a class, 1/h
 pods           | real | I   | number of pods of a class
 places         | real | J   | storage locations of a zone
-congestion_s_h | real | J   | delay of a visit to a zone for each visit per hour to it, s h
+congestion_s_h | real | J   | delay of a visit from a zone per visit per hour from it, s h
 """
         ),
         fields_of(
@@ -276,9 +276,9 @@ longest    | whole |     | maximum number of time slots of a stay
 taper_from | real  |     | level from which charging slows down; 1: never
 full       | real  |     | level that counts as full
 least      | real  |     | level below which no robot should fall
-short_s    | real  |     | cost of falling below `least`, s per share of the capacity
-idle       | real  |     | cost of time away of a robot not needed, as a share of that of one needed
-curve      | real  |     | value of energy / its mean: 1 + curve if empty, 1 - curve if full
+short_s    | real  |     | cost of falling below `least`, s for a shortfall of a full battery
+idle       | real  |     | cost of time away if a robot is not needed, as a share of that if it is
+curve      | real  |     | value of energy / mean value: 1 + curve if empty, 1 - curve if full
 """
         ),
         fields_of(
@@ -305,7 +305,7 @@ leave_s  | cost | T   | cost of leaving a task undone, s; "inf" if it must be do
             """
 arrive_s    | cost  | R T | time until a robot is at the station with the pod of a task, s
 leave_s     | cost  | T   | cost of leaving a task undone, s; "inf" if it must be done
-due_s       | cost  | T   | due time of a task's pod at the station, s; "inf" if there is none
+due_s       | cost  | T   | time until a task's pod is due at the station, s; "inf" if there is none
 station     | whole | T   | station of a task
 queue       | whole | S   | pods at a station or on their way to it
 service_s   | real  | S   | time for which a pod occupies a station, s
@@ -382,7 +382,7 @@ stock.pod_units            | whole | P | maximum number of units in a pod at the
 stock.largest_pod_units    | whole |   | maximum number of units in any pod at any time
 orders.units               | cost  |   | maximum number of units ordered
 orders.largest_order_units | cost  |   | maximum number of units in an order
-orders.lone_units          | cost  |   | maximum units of orders that one visit serves completely
+orders.lone_units          | cost  |   | maximum units in orders that one visit serves completely
 orders.join_visits         | flag  |   | whether orders may join a visit in progress
 """
         ),
@@ -403,7 +403,7 @@ refill_visits | real | Q | visits to replenishment stations
 
 
 def sizes(schema: Schema, data: Plain) -> dict[str, int]:
-    """Return the size of every dimension of a question.
+    """Return the size of every dimension of a question, by its letter.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Solution of questions by the models of rmfs, given method, limit of work and seed."""
+"""Solution of questions by the models of rmfs, with a given method, limit of work and seed."""
 
 from __future__ import annotations
 
@@ -49,8 +49,8 @@ def limits_of(method: str, work: float | None) -> Limits:
     method
         Name of the method.
     work
-        Number of nodes for HiGHS, of steps for local searches, and of deterministic seconds for
-        other methods. None: no limit.
+        The limit: a number of nodes for `highs`; of steps for `lns`, `beam` and `hadgs`; of
+        deterministic seconds for other methods. None: no limit.
     """
     if work is None:
         return NO_LIMITS
@@ -96,7 +96,7 @@ def solve(
     InputError
         If there is no such method, or the model rejects the question.
     WallGuardError
-        If the guard ran out.
+        If the method took longer than `guard_s`.
     """
     name = where or decision.name
     plain = work is None and seed == 0 and start is None

@@ -135,7 +135,7 @@ def costs(
     *,
     low: float | None = None,
 ) -> NDArray[np.float64]:
-    """Check and freeze an array of costs in which +inf means "not allowed".
+    """Check and freeze an array of costs in which +inf marks a forbidden choice.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def costs(
     Raises
     ------
     ModelError
-        If the shape, the type or a value is wrong; -inf and nan are not allowed.
+        If the shape, the type or a value is wrong; -inf and nan are wrong values.
     """
     raw = np.asarray(value)
     if raw.dtype.kind != "f":
@@ -215,7 +215,7 @@ def number(
     Raises
     ------
     ModelError
-        If it is not finite or out of range.
+        If it is out of range or not finite.
     """
     return float(reals(field, value, (), low=low, high=high))
 

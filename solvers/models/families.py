@@ -36,10 +36,10 @@ class Family(Protocol):
         """Return the names of the methods."""
 
     def objective(self, data: Any, values: Any, /) -> float:
-        """Return the objective of the given values."""
+        """Return the objective of the decision `values` for the problem `data`."""
 
     def violations(self, data: Any, values: Any, /) -> list[str]:
-        """Return descriptions of the constraints that the given values violate."""
+        """Return descriptions of the constraints of `data` that the decision `values` violates."""
 
 
 def family(name: str) -> Family:

@@ -32,7 +32,8 @@ class Methods(Generic[D, V]):
     default
         Name of the method used by default.
     rule
-        Name of the fast heuristic that the other methods start from; empty if there is none.
+        Name of the fast heuristic whose solution can be the `start` of the other methods; empty if
+        there is none.
 
     Attributes
     ----------

@@ -36,7 +36,7 @@ class LinearProgram:
         Whether each column must be an integer, shape (n,).
     row_start, column, coefficient
         The matrix A in compressed rows: row i holds ``coefficient[row_start[i]:row_start[i + 1]]``
-        in the columns ``column[...]``, sorted and without duplicates.
+        in the columns ``column[row_start[i]:row_start[i + 1]]``, which are sorted and distinct.
     row_lower, row_upper
         Bounds of each row, shape (m,); infinite if there is none.
     offset
@@ -92,7 +92,7 @@ class LinearProgram:
 
     @property
     def nonzeros(self) -> int:
-        """Number of entries of the matrix."""
+        """Number of entries stored for the matrix."""
         return int(self.column.shape[0])
 
     @cached_property
@@ -151,8 +151,8 @@ class ProgramBuilder:
         cost, lower, upper
             Values of that shape, or values that broadcast to it. Defaults: 0, 0 and 1.
         integer
-            Whether the columns must be integers. Default: yes, so that columns are binary by
-            default.
+            Whether the columns must be integers. Default: yes; with the default bounds, they are
+            then binary.
 
         Returns
         -------

@@ -1,7 +1,7 @@
 """The result of every model, and the limits of solvers.
 
-All limits are in deterministic work, so the same input gives the same output however busy the
-machine is. A wall-clock guard exists, but it can only raise an error.
+Solvers are limited in deterministic work, not in time, so the same input gives the same output
+however busy the machine is. There is also a wall-clock guard, but it can only raise an error.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class Status(Enum):
     """The constraints are proven to be unsatisfiable."""
 
     LIMIT = "limit"
-    """The limit was reached before a feasible solution was found."""
+    """No feasible solution was found, as a limit was reached or a heuristic failed."""
 
 
 class Sense(Enum):
@@ -56,7 +56,7 @@ class Sense(Enum):
 
     @property
     def worst(self) -> float:
-        """The objective without a solution: +inf when minimising, -inf when maximising."""
+        """Value of the objective if there is no solution: +inf if minimised, -inf if maximised."""
         return math.inf * self.value
 
 
@@ -67,13 +67,13 @@ class Limits:
     Parameters
     ----------
     deterministic_s
-        Limit of CP-SAT in its own deterministic seconds (each roughly a second of one core, but
-        counted in operations). Default: none.
+        Limit of CP-SAT, or of column generation, in deterministic seconds (each roughly a second of
+        one core, but counted in operations). Default: none.
     nodes
         Limit of HiGHS in nodes of its branch and bound. Default: none.
     iterations
-        Limit of an LP, assignment, flow or interior-point solve, or of a local search, in its
-        iterations. Default: none.
+        Limit of the simplex method on an LP, of an interior-point method, or of a heuristic or
+        search that works in steps, in its iterations. Default: that of the method.
     gap
         Relative gap at which a solve counts as optimal. Default 0.
     wall_guard_s
@@ -115,14 +115,14 @@ class Solution(Generic[V_co]):
         Value of the model's objective function (never the number that a solver reports);
         `sense.worst` if there are no values.
     bound
-        A proven bound on the best objective: below it when minimising, above it when maximising;
-        ``-sense.worst`` if nothing is known.
+        A proven bound on the best objective: a lower bound if it is minimised, an upper bound if it
+        is maximised; ``-sense.worst`` if nothing is known.
     status
         The outcome of the solve.
     backend
-        Name of the back end, such as ``"cp_sat"``, ``"highs"``, ``"greedy"``.
+        Name of the back end, such as ``"cp_sat"``, ``"highs"``, ``"rule"``.
     wall_s
-        Wall-clock seconds of the whole call, including building. Never used in results.
+        Wall-clock seconds of the whole call, including building; not reproducible.
     build_s
         The part of `wall_s` spent building the solver's model from the arrays.
     work
@@ -130,8 +130,9 @@ class Solution(Generic[V_co]):
     sense
         Whether the objective is minimised or maximised. Default: minimised.
     built
-        Nonzeros of the programs passed to a solver, plus other building work, expressed as the
-        number of nonzeros that would take the same time. Deterministic, like `work`.
+        Work spent building: the number of nonzeros of the programs passed to a solver, plus, for
+        any other building, the number of nonzeros that would take the same time. Deterministic,
+        like `work`.
 
     Raises
     ------
@@ -255,7 +256,7 @@ def solution_of_optimum(
     Parameters
     ----------
     values
-        Optimal values; None: infeasible.
+        Optimal values; None if the problem is infeasible.
     objective
         The model's objective function.
     bound
@@ -265,7 +266,7 @@ def solution_of_optimum(
     work
         Work in the back end's unit.
     began, built
-        Start time, and time when the solver's model was built, by `time.perf_counter`.
+        Times when the call began and when the solver's model was complete, by `time.perf_counter`.
     """
     wall_s, build_s = perf_counter() - began, built - began
     if values is None:

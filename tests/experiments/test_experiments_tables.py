@@ -85,7 +85,7 @@ def test_factors_as_columns_and_side_by_side(results):
         cell = wide.frame.loc["16", (f"units_per_h, psa={rule}", "mean")]
         assert cell == table.frame.loc[f"robots=16,psa={rule}", ("units_per_h", "mean")]
     text = wide.to("markdown")
-    assert "units per hour, psa=random" in text and "3 seeds a cell." in text
+    assert "units per hour, psa=random" in text and "3 seeds per cell." in text
     assert arranging.across(table, plan, "controllers.psa").to("csv") == wide.to("csv")
     fewer = tables.means(frame[frame["arm"] != "robots=16,psa=random"], ["units_per_h"])
     assert "- |" in arranging.across(fewer, plan, "psa").to("markdown")

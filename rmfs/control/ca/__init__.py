@@ -23,7 +23,7 @@ class ChargeAssignment(Controller[P]):
     Energy stations are chargers and swap stations. CA decides before TA, and only in runs whose
     robots have batteries (`view.batteries`). It can send the robots of `view.asking` and
     `view.resting`. Independently of the rule, the simulation sends a robot to an energy station if
-    the robot's charge may not suffice for another task and the trip to the station after it.
+    the robot's charge may not suffice for another task followed by a trip to the station.
     """
 
     problem = Problem.CA
@@ -36,6 +36,6 @@ class ChargeAssignment(Controller[P]):
     def target_share(self) -> float:
         """Return the level (share of capacity) up to which a robot sent by the simulation charges.
 
-        The simulation sends a robot, independently of the rule, if the robot's charge is low.
+        The simulation sends a robot to charge, independently of the rule, if its charge is low.
         """
         return 0.8

@@ -1,4 +1,4 @@
-"""CA breaks: robots charge at fixed times of the day."""
+"""CA breaks: robots charge during breaks, at fixed times of a cycle that repeats."""
 
 from __future__ import annotations
 
@@ -41,9 +41,10 @@ class BreaksParameters(LevelParameters):
 
 
 class Breaks(ByLevel[BreaksParameters]):
-    """Sends robots without work to charge during breaks, and at other times if their level is low.
+    """Sends robots to charge during breaks; at other times, only robots whose level is low.
 
-    This is known as interim charging. Robots in excess of the charging places wait in queues.
+    This is known as interim charging. Robots finish their tasks first. If robots outnumber
+    the charging places, some of them wait in queues.
     """
 
     parameters_model = BreaksParameters

@@ -55,7 +55,7 @@ P = TypeVar("P", bound=PlaceParameters)
 
 
 class ByLevel(ChargeAssignment[P]):
-    """Sends robots to charge in the order of their levels, the lowest first."""
+    """Sends robots to charge; those with the lowest battery levels choose their places first."""
 
     @abstractmethod
     def wanted_share(self, robot: Robot, share: float) -> float:
@@ -75,7 +75,7 @@ class ByLevel(ChargeAssignment[P]):
             yield from self._hand_over(shares, self.parameters.hand_over_share)
 
     def enough_share(self) -> float:
-        """Return the level (share of capacity) that is enough energy for any task."""
+        """Return the level (share of capacity) at which the energy suffices for any task."""
         batteries = self.view.batteries
         return 0.0 if batteries is None else batteries.enough_share
 

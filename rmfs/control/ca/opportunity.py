@@ -48,7 +48,7 @@ class Opportunity(ByLevel[OpportunityParameters]):
     )
 
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield decisions that send robots to charge, and at most one that calls a robot back."""
+        """Yield the decisions of the base class, then at most one that calls a robot back."""
         yield from super().decide()
         batteries, view = self.view.batteries, self.view
         work_waits = any(station.has_open_work for station in view.stations)

@@ -1,4 +1,4 @@
-"""Energy stations, and the rules that choose one."""
+"""Energy stations (chargers and swap stations), and the rules that choose one."""
 
 from __future__ import annotations
 
@@ -46,18 +46,18 @@ def choose(
 ) -> int:
     """Return the number of the energy station chosen for a robot, or -1.
 
-    It is -1 if no station has room, or the chosen station cannot be reached.
+    The number is -1 if no station may be chosen, or the chosen one cannot be reached.
 
     Parameters
     ----------
     rule
-        `least-queued`: the station with the fewest robots there or on their way, then the nearest.
-        `nearest`: the station with the shortest unhindered travel time, then with the fewest
-        robots. `soonest`: the station with the least total charging or swap time of the robots
-        there or on their way, then the nearest.
+        `least-queued`: the station with the fewest robots there or on their way; ties go to the
+        nearest. `nearest`: the station with the shortest unhindered travel time; ties go to the one
+        with the fewest robots there or on their way. `soonest`: the station with the least total
+        charging or swap time of the robots there or on their way; ties go to the nearest.
     full_too
-        Whether stations with a full queue are considered; the robot may have to wait outside the
-        queue.
+        Whether a station whose queue has no room may be chosen; the robot may then have to wait
+        outside the queue. Otherwise, only stations with room may be chosen.
     among
         The stations to choose from. Default: all.
     """

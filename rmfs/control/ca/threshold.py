@@ -1,4 +1,4 @@
-"""CA rules `threshold` and `to-full`: a robot charges when its level is low."""
+"""CA rules `threshold` and `to-full`: a robot charges when its battery level is low."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Threshold(ByLevel[LevelParameters]):
-    """Sends a robot to charge when its level is below one threshold, and releases it at another.
+    """Makes a robot charge when its battery level is below one threshold, until it reaches another.
 
     The thresholds are called `threshold_soc` and `recharge_soc` in Open-RMF, and replenish and
     release points in DELMIA.
@@ -20,7 +20,7 @@ class Threshold(ByLevel[LevelParameters]):
     parameters_model = LevelParameters
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Return `until_share` if the robot's level is below `below_share`, else 0."""
+        """Return `until_share` if the robot's level `share` is below `below_share`, else 0."""
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 
@@ -30,22 +30,22 @@ class Threshold(ByLevel[LevelParameters]):
 
 
 class ToFullParameters(PlaceParameters):
-    """Parameters of CA to-full."""
+    """Parameters of the CA rule `to-full`."""
 
     below_share: Share = 0.3
     """A robot charges when its level falls below this share of the capacity."""
 
 
 class ToFull(ByLevel[ToFullParameters]):
-    """Sends a robot to charge when its level is below a threshold, until its battery is full."""
+    """Sends a robot to charge fully when its battery level is below a threshold."""
 
     parameters_model = ToFullParameters
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Return `target_share()` if the robot's level is below `below_share`, else 0."""
+        """Return `target_share()` if the robot's level `share` is below `below_share`, else 0."""
         return self.target_share() if share < self.parameters.below_share else 0.0
 
     def target_share(self) -> float:
-        """Return the level (share of capacity) that counts as full."""
+        """Return the battery level (share of capacity) that counts as full."""
         batteries = self.view.batteries
         return 1.0 if batteries is None else batteries.given.full_share

@@ -20,8 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class MethodManagement(Controller[P]):
     """Decides which controllers are replaced by which others, and when.
 
-    It decides before all other controllers. The commitments of a controller (bundles promised to
-    pods, tasks of robots) are part of the world, so its successor takes them over.
+    If several controllers are to decide at the same instant, this one comes first. The commitments
+    made by a controller (bundles promised to pods, tasks of robots) are stored outside it, so they
+    remain in force when the controller is replaced.
     """
 
     problem = Problem.MM
@@ -29,11 +30,11 @@ class MethodManagement(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[Exchange]:
-        """Yield the controllers to be installed now."""
+        """Yield the exchanges to be made now."""
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check, when a controllers file is read, that the rules fit together after exchanges.
+        """Check, when a controllers file is read, that all exchanges lead to compatible rules.
 
         The base class checks nothing.
 

@@ -1,4 +1,4 @@
-"""MM random: periodically installs a set of rules drawn from a list."""
+"""MM random: periodically installs one of several sets of rules, chosen at random."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class RandomParameters(Parameters):
 
 
 class RandomExchange(MethodManagement[RandomParameters]):
-    """Installs, after each period, an alternative drawn from a list with equal probabilities.
+    """Installs one of the `alternatives`, all equally likely, at the end of each period.
 
     If the drawn alternative is already installed, its rules start anew.
     """
@@ -52,7 +52,7 @@ class RandomExchange(MethodManagement[RandomParameters]):
         self._periods = 1
 
     def decide(self) -> Iterator[Exchange]:
-        """Yield exchanges to one alternative for each period that has ended since the last call."""
+        """Yield, for each period ended since the last call, the exchanges of one alternative."""
         while self.next_event_s() <= self.view.now_s:
             self._periods += 1
             alternatives = self.parameters.alternatives
@@ -65,13 +65,13 @@ class RandomExchange(MethodManagement[RandomParameters]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check that each alternative can be combined with the initial controllers.
+        """Check that each alternative is compatible with the initial rules of the other problems.
 
         Raises
         ------
         InputError
-            If an alternative cannot be combined with them, or contains a rule that decides several
-            problems, or a dummy, which leaves its problem to another rule.
+            If an alternative is not compatible with them, if it contains a rule that decides
+            several problems, or if it contains a dummy (which leaves its problem to another rule).
         """
         given = choices[Problem.MM].parameters
         assert isinstance(given, RandomParameters)

@@ -1,4 +1,4 @@
-"""A set of rules to be installed together, as written in a file."""
+"""A set of rules to be installed together, as written in a controllers file."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class PlannedExchange(Rules):
-    """Rules to be installed together at one time."""
+    """Rules to be installed together at a given time."""
 
     at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] | None = None
     """Simulated time of the exchange in seconds; give either this or `at_share`."""
@@ -59,7 +59,7 @@ class Scheduled(MethodManagement[ScheduledParameters]):
     """Exchanges controllers of any problem at given times.
 
     The rules of one exchange are installed together. Parameters that are not given have their
-    defaults.
+    default values.
     """
 
     parameters_model = ScheduledParameters
@@ -84,12 +84,12 @@ class Scheduled(MethodManagement[ScheduledParameters]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check that entries are in order, and that the rules fit together after every exchange.
+        """Check that exchanges are in order of time, and that each one leads to compatible rules.
 
         Raises
         ------
         InputError
-            If one of these conditions is violated, or some entries have `at_s` and others
+            If one of these conditions is violated, or some exchanges have `at_s` and others
             `at_share`.
         """
         given = choices[Problem.MM].parameters

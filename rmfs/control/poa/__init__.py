@@ -18,12 +18,12 @@ P = TypeVar("P", bound=Parameters)
 
 
 class PickOrderAssignment(Controller[P]):
-    """Assigns orders of `view.orders` to stations with free slots.
+    """Assigns orders of the backlog (`view.orders`) to pick stations with free slots.
 
     Each decision is applied immediately: when the controller is resumed, an assigned order has left
     the backlog and occupies its slot. Orders that are not chosen wait until the next call. A
-    controller may also queue orders at a station (`QueueOrder`), so that pods are fetched for them
-    before a slot is free.
+    controller may also put orders into the pool of a station (`QueueOrder`), so that pods can be
+    fetched for them before a slot is free.
     """
 
     problem = Problem.POA
@@ -39,4 +39,4 @@ class PickOrderAssignment(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[AssignOrder | AssignLines | QueueOrder | Ask[Any] | By[Any]]:
-        """Yield decisions until no further order should be assigned or queued now."""
+        """Yield decisions until no further order should be assigned or put into a pool now."""

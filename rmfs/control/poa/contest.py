@@ -16,16 +16,17 @@ if TYPE_CHECKING:
 
 
 class Contest:
-    """N orders of the backlog that compete for a place in a station's pool, or for its slots.
+    """N backlog orders that compete for a place in the pool of a station, or for one of its slots.
 
     Attributes
     ----------
     rows
-        Rows of the orders in the backlog, shape (N,).
+        Rows of the orders in the arrays of the backlog (`view.orders`), shape (N,).
     for_pool
         Whether the orders compete for a place in the pool; otherwise they compete for a slot.
     sku, units
-        SKU of each order line, and its units not yet bound to a pod, shape (N, L).
+        SKU of each order line, and the number of the line's units that are not yet bound to a pod,
+        shape (N, L).
     """
 
     def __init__(
@@ -70,10 +71,10 @@ class Contest:
         return [at_row[row] for row in self.rows.tolist()]
 
     def claimed(self) -> NDArray[np.int32]:
-        """Return how many units of each SKU are needed by orders ahead of the contest, shape (K,).
+        """Return, for each SKU, how many units other orders need first, shape (K,).
 
-        Ahead are the orders with a slot at the station and, if the contest is for the pool, also
-        those already in the pool. Only units that are not yet bound to a pod count.
+        These other orders are the ones with a slot at the station and, if the contest is for the
+        pool, also those already in the pool. Only units that are not yet bound to a pod count.
         """
         claimed: NDArray[np.int32] = self.view.need[self.station.index]
         if self.for_pool:
@@ -81,10 +82,10 @@ class Contest:
         return claimed
 
     def company(self) -> NDArray[np.bool_]:
-        """Return, for each SKU, whether an order with a slot has a line for it, shape (K,).
+        """Return which SKUs occur in orders with a slot at the station, shape (K,).
 
-        Lines count whether picked or not. If the contest is for the pool, the orders in the pool
-        count instead of those with a slot.
+        Lines count even if they have been picked. If the contest is for the pool, the orders in
+        the pool count instead of those with a slot.
         """
         wanted = np.zeros(len(self.view.skus), np.bool_)
         if self.for_pool:
@@ -106,10 +107,10 @@ class Contest:
         return [pods[place] for place in nearest_first.tolist()], metres[nearest_first]
 
     def completed_by(self, pod: int) -> NDArray[np.bool_]:
-        """Return which orders are completed by a pod at the station or on its way there, (N,).
+        """Return which orders a pod, at the station or on its way there, can complete, shape (N,).
 
-        The pod must have all units that the order still needs, in addition to those that orders
-        with a slot need; and no unit of the order may be bound to another pod.
+        For this, the pod must have all units that an order still needs, in addition to those that
+        orders with a slot need; and no unit of the order may be bound to another pod.
         """
         spare = self.view.inventory.available[:, pod][self.sku]
         spare = spare - self.view.need[self.station.index][self.sku]
@@ -122,10 +123,10 @@ class Contest:
         return completes
 
     def completed_by_all(self) -> NDArray[np.bool_]:
-        """Return which orders are completed by all `inbound` pods together, shape (N,).
+        """Return which orders the `inbound` pods can complete together, shape (N,).
 
-        The pods must have all units that the order still needs, in addition to those that `claimed`
-        counts.
+        For this, the pods must have all units that an order still needs, in addition to those that
+        `claimed` counts.
         """
         spare = self.view.inventory.inbound[self.station.index][self.sku]
         spare = spare - self.claimed()[self.sku]

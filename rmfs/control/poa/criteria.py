@@ -41,7 +41,7 @@ class FirstCome(Parameters):
     criterion: Literal["first-come"] = "first-come"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return minus the ordinal of arrival."""
+        """Return the negative of each order's ordinal of arrival."""
         return -contest.view.orders.index[contest.rows]
 
 
@@ -51,7 +51,7 @@ class DueTime(Parameters):
     criterion: Literal["due-time"] = "due-time"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return minus the due time in s."""
+        """Return the negative of each order's due time in s."""
         return -contest.view.orders.due_s[contest.rows]
 
 
@@ -69,12 +69,12 @@ class DueSoon(Parameters):
 
 
 class Weight(Parameters):
-    """Prefers orders of the class with the highest weight of lateness."""
+    """Prefers orders with the highest weight of lateness (given by their class)."""
 
     criterion: Literal["weight"] = "weight"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return the weight of the order's class."""
+        """Return each order's weight of lateness."""
         return contest.view.orders.weight[contest.rows]
 
 
@@ -115,8 +115,8 @@ class Completable(Parameters):
 
     criterion: Literal["completable"] = "completable"
     by: Literal["nearest-pod", "all-pods"] = "nearest-pod"
-    """Which pods must complete the order: the nearest pod alone, if no unit of the order is bound
-    to another pod (`nearest-pod`), or all pods together (`all-pods`)."""
+    """Which pods must be able to complete the order: the nearest pod alone (`nearest-pod`; no unit
+    of the order may then be bound to another pod), or all pods together (`all-pods`)."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
         """Return 1 for orders that can be completed as `by` requires, else 0."""
@@ -130,10 +130,10 @@ class InboundMatches(Parameters):
     """Prefers orders with the most SKUs on inbound pods; near pods count more.
 
     Inbound pods are at the station or on their way there. An order is assumed to take its units
-    from the nearest of them that can spare any. For each SKU taken from a pod, the order scores one
-    point or, if the pod counts as near, the number of inbound pods minus the number of those nearer
-    than this pod. A pod counts as near if the number of units of the SKU taken from it, times its
-    distance in m, is at most `near_unit_metres`.
+    from the nearest of them that can spare any. For each SKU and each pod from which it is taken,
+    the order scores one point; if the pod counts as near, the order scores another point for each
+    inbound pod that is farther away. A pod counts as near if the number of units of the SKU taken
+    from it, times its distance in m, is at most `near_unit_metres`.
     """
 
     criterion: Literal["inbound-matches"] = "inbound-matches"
@@ -177,8 +177,8 @@ class Related(Parameters):
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
         """Return, for each order, the share of its lines for SKUs that are also in other orders.
 
-        Only lines with units not yet bound to a pod count. The other orders are those in the pool
-        if the contest is for the pool, and otherwise those with a slot.
+        Of the order's own lines, only those with units not yet bound to a pod count. The other
+        orders are those in the pool if the contest is for the pool, else those with a slot.
         """
         is_line = contest.units > 0
         shared = contest.company()[contest.sku] & is_line

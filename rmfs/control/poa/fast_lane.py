@@ -1,4 +1,4 @@
-"""Fast lane: assigns orders that the pod being served at a station can complete alone."""
+"""Fast lane: assigns orders to stations whose current pod alone can complete them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class _Visit:
     newest
         Index of the newest order that was checked.
     fitting
-        Orders that it can complete, by index.
+        Orders that the pod can complete, by index.
     """
 
     number: int
@@ -64,7 +64,7 @@ class FastLane:
         self._newest = -1
 
     def decide(self) -> Iterator[AssignOrder]:
-        """Yield assignments until no pod that is being served can complete another order."""
+        """Yield assignments while the pod at a station with a free slot can complete an order."""
         for index in self._promising():
             station, fitting = self._view.pick_stations[index], self._visits[index].fitting
             pod = self._view.robots[station.robot].pod

@@ -40,8 +40,8 @@ class Filling(PickOrderAssignment[P]):
     """Assigns orders to free slots, one after another.
 
     If the rule has a fast lane, orders for it come first, and one slot is reserved for it at each
-    station with more than one slot. Stock can serve an order if pods have all its units available
-    in addition to those that orders at stations need.
+    station with more than one slot. An order counts as one that stock can serve if the pods have
+    all its units available in addition to those that orders at stations need.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -57,18 +57,18 @@ class Filling(PickOrderAssignment[P]):
 
     @abstractmethod
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose an order of the backlog that stock can serve, and one of the given stations.
+        """Choose a backlog order that stock can serve, and one of the given stations.
 
         Return None if no order should be assigned now.
 
         Parameters
         ----------
         stations
-            Stations with a slot to fill, at least one, in order of their numbers.
+            One or more stations, each with a slot to fill, in order of their numbers.
         """
 
     def decide(self) -> Iterator[AssignOrder]:
-        """Yield assignments of orders to the fast lane, then to the other slots."""
+        """Yield assignments of orders for the fast lane, then of other orders."""
         if self._lane is not None:
             yield from self._lane.decide()
         while len(self.view.orders):

@@ -1,4 +1,4 @@
-"""POA foresight: assigns the best pair of station and order by two scores."""
+"""POA foresight: assigns the station-order pair with the best score; a second breaks ties."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ class Foresight(Filling[ForesightParameters]):
     """Assigns the station-order pair that has the highest score, then the next pair, and so on.
 
     Ties are broken by the secondary score, then in favour of the station with the most free slots,
-    the station with the lowest number, and the order that arrived first. In the scores
-    (`ForesightParameters.score`), stock is spare if orders already at the station do not need it.
-    For the additional points of the scores `depletion` and `surplus`, however, all available units
-    of a pod count, even those that other orders need.
+    the station with the lowest number, and the order that arrived first. Spare stock (see
+    the parameter `score`) is stock that orders already at the station do not need. For the
+    additional points of the scores `depletion` and `surplus`, however, all available units of a pod
+    count, even those that other orders need.
     """
 
     parameters_model = ForesightParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the best pair of a servable order and a station."""
+        """Choose the best pair of a station and an order that stock can serve."""
         orders = self.view.orders
         rows = self.servable_rows()
         if not len(rows):

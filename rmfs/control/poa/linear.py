@@ -34,11 +34,11 @@ class LinearParameters(FastLaneParameters):
 
 
 class Linear(Filling[LinearParameters]):
-    """Fills free slots, each by the order with the greatest weighted sum of features.
+    """Assigns the station-order pair with the greatest weighted sum of features, then the next.
 
-    Of all pairs of a station with a free slot and an order that stock can serve, the one with the
-    greatest sum is chosen. Orders for the fast lane, unless this is switched off, come first. Ties
-    go to the order that arrived first, then to the station with the lowest number.
+    All stations with a free slot are paired with all orders that stock can serve. Unless the fast
+    lane is switched off, orders for it come first. Ties go to the order that arrived first, then to
+    the station with the lowest number.
     """
 
     parameters_model = LinearParameters

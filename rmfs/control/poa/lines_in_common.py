@@ -19,7 +19,7 @@ class LinesInCommon(BestPair[PairParameters]):
 
     The score of a pair is the sum, over the lines of the order, of the number of orders at the
     station with a line for the same SKU, even if that line has been picked. The pair with the
-    highest score is assigned, then the next, until no slot is free. Ties are broken by the
+    highest score is assigned, then the next, until no order can be assigned. Ties are broken by the
     tie-breaker, then by arrival, then by station number.
     """
 

@@ -1,4 +1,4 @@
-"""How well orders match the pods on their way to a station."""
+"""How well orders match the pods at a station or on their way there."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def line_matches(view: View, station: int) -> NDArray[np.int32]:
-    """Return how many units of each order line can come from inbound pods, shape (B, L).
+    """Return how many units of each backlog order line can come from inbound pods, shape (B, L).
 
     Inbound pods are at the station or on their way there. They can supply what they have
     available in addition to the units that orders at the station still need from pods.

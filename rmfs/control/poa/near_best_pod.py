@@ -1,4 +1,4 @@
-"""POA near-best-pod: sends each order, by arrival, to the station nearest to its best pod."""
+"""POA near-best-pod: sends each order to the station nearest to the best pod for the order."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ class NearBestPodParameters(Parameters):
 
 
 class NearBestPod(Filling[NearBestPodParameters]):
-    """Sends an order to the station nearest to the pod that serves it best.
+    """Sends an order to the station that is nearest to the best pod for the order.
 
-    Orders are taken by arrival; those that stock cannot serve are skipped. The best pods of an
-    order are the stored pods that can serve the most of its units; the station nearest to any of
-    them is chosen. Ties go to the station with the lowest number. If no stored pod has a unit of
-    the order, the station with the fewest open orders is chosen.
+    Orders are assigned in the sequence of their arrival; those that stock cannot serve are skipped.
+    The best pods for an order are the stored pods with the most of its units available; the station
+    nearest to any of them is chosen. Ties go to the station with the lowest number. If no stored
+    pod has a unit of the order, the station with the fewest open orders is chosen.
     """
 
     parameters_model = NearBestPodParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that arrived first, and a station by distance."""
+        """Choose the oldest order that stock can serve, and a station by distance."""
         order = self.oldest_order()
         if order is None:
             return None

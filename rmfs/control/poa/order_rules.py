@@ -1,4 +1,4 @@
-"""POA rules that choose an order first and then a station, whatever the order contains."""
+"""POA rules that first choose an order, then a station regardless of the order's contents."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class OrderRule(Filling[OrderRuleParameters]):
         """Choose an order that stock can serve; None if there is none."""
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order by the rule, and the station by the parameters."""
+        """Choose an order with `choose_order`, and a station as the parameters require."""
         order = self.choose_order()
         if order is None:
             return None
@@ -88,12 +88,12 @@ class RandomOrder(OrderRule):
 class FirstCome(OrderRule):
     """Fills free slots with orders in the sequence of their arrival.
 
-    Orders that stock cannot serve are skipped. Source: rule "Random" of RAWSim-O, and its
-    rule "Default" with first come, first served.
+    Orders that stock cannot serve are skipped. Source: rule "Random" of RAWSim-O, which draws
+    only the station at random, and its rule "Default" with first come, first served.
     """
 
     def choose_order(self) -> Order | None:
-        """Choose the order that arrived first; None if stock can serve none."""
+        """Choose the oldest order that stock can serve; None if there is none."""
         return self.oldest_order()
 
 
@@ -104,7 +104,7 @@ class DueTime(OrderRule):
     """
 
     def choose_order(self) -> Order | None:
-        """Choose the order that is due first; None if stock can serve none."""
+        """Choose, of the orders that stock can serve, the one due first; None if there is none."""
         rows = self.servable_rows()
         if not len(rows):
             return None
@@ -113,7 +113,7 @@ class DueTime(OrderRule):
 
 
 class WorkParameters(OrderRuleParameters):
-    """Parameters of POA rules that compare the time until an order is due with its work."""
+    """Parameters of POA rules that compare the time until an order is due with the order's work."""
 
     line_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
     """Work per order line in seconds, as an estimate of the time until its pod arrives."""
@@ -153,8 +153,8 @@ class _ByWork(OrderRule):
 class Slack(_ByWork):
     """Fills free slots with the orders that have the least slack.
 
-    Slack is the time until an order is due minus its work, which is `line_s` per order line plus
-    `unit_s` per unit. Ties go to the order that arrived first. Source: the least-slack rule of job
+    The slack of an order is the time until it is due, minus its work (`line_s` per order line plus
+    `unit_s` per unit). Ties go to the order that arrived first. Source: the least-slack rule of job
     shops (Panwalkar, Iskander 1977).
     """
 
@@ -170,10 +170,10 @@ class Slack(_ByWork):
 class CriticalRatio(_ByWork):
     """Fills free slots with the orders that have the least time left relative to their work.
 
-    The ratio is the time until an order is due, divided by its work, which is `line_s` per order
-    line plus `unit_s` per unit. If it is below 1, the order is expected to be late. Slack divided
-    by work, which is this ratio minus 1, gives the same sequence. Ties go to the order that arrived
-    first. Source: Panwalkar, Iskander (1977).
+    The critical ratio of an order is the time until it is due, divided by its work (`line_s` per
+    order line plus `unit_s` per unit). If this ratio is below 1, the order is expected to be late.
+    Slack divided by work, which is this ratio minus 1, gives the same sequence. Ties go to the
+    order that arrived first. Source: Panwalkar, Iskander (1977).
     """
 
     def _scores(
@@ -196,11 +196,11 @@ class TardinessCostParameters(WorkParameters):
 class TardinessCost(_ByWork):
     """Fills free slots with the orders whose lateness would be most costly relative to their work.
 
-    The order with the highest index w / p x exp(-s / (`ahead` x m)) comes first. Here, w is the
-    weight of the order's class, p its work (`line_s` per order line plus `unit_s` per unit), s its
-    slack (time until it is due minus p, at least 0), and m the mean work of the orders that can be
-    served. Ties go to the order that arrived first. Source: apparent tardiness cost (Vepsalainen,
-    Morton 1987), where `ahead` is 2.
+    The order with the highest value of (w / p) x exp(-s / (`ahead` x m)) comes first. Here, w is
+    the weight of the order's class, p the order's work (`line_s` per order line plus `unit_s` per
+    unit), s its slack (the time until it is due minus p, but at least 0), and m the mean work of
+    the orders that stock can serve. Ties go to the order that arrived first. Source: apparent
+    tardiness cost (Vepsalainen, Morton 1987), where `ahead` is 2.
     """
 
     parameters_model = TardinessCostParameters
@@ -223,11 +223,11 @@ class TardinessCost(_ByWork):
 class FrequencyAge(OrderRule):
     """Fills free slots with old orders for frequently ordered SKUs.
 
-    The order with the highest product of age and frequency comes first. The age of the oldest of
-    the B orders in the backlog is 1; in sequence of arrival, each is younger by 1/B than the one
-    before. The frequency of an order is the mean, over its lines, of the number of units of the
-    line's SKU that have been ordered so far, including before the run. Ties go to the order that
-    arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
+    The order with the highest product of age and frequency comes first. Age is measured by rank: 1
+    for the oldest of the B orders in the backlog, 1 - 1/B for the second oldest, and so on, down to
+    1/B for the newest. The frequency of an order is the mean, over its lines, of the number of
+    units of the line's SKU that have been ordered so far, including before the run. Ties go to the
+    order that arrived first. Source: rule "Default" of RAWSim-O with frequency and age.
     """
 
     def __init__(
@@ -237,7 +237,7 @@ class FrequencyAge(OrderRule):
         self._frequency = view.trackers.get(Frequency)
 
     def choose_order(self) -> Order | None:
-        """Choose the order for which age times frequency is highest; None if stock serves none."""
+        """Choose the order with the highest age times frequency; None if stock can serve none."""
         rows = self.servable_rows()
         if not len(rows):
             return None

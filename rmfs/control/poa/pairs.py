@@ -35,7 +35,7 @@ class BestPair(Filling[Q]):
 
     @abstractmethod
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Return the scores (0 or more) of the B orders of the backlog at S stations, (S, B)."""
+        """Return the scores (at least 0) of the B backlog orders at S stations, shape (S, B)."""
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
         """Choose the best pair of a servable order and a station."""

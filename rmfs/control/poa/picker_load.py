@@ -1,4 +1,4 @@
-"""POA picker-load: sends orders, by arrival, to the picker who would finish all work first."""
+"""POA picker-load: sends each order to the picker who would complete it first."""
 
 from __future__ import annotations
 
@@ -26,17 +26,17 @@ class PickerLoadParameters(Parameters):
 class PickerLoad(Filling[PickerLoadParameters]):
     """Balances work over pickers: slow or tired pickers get fewer units.
 
-    Orders are taken by arrival; those that stock cannot serve are skipped. An order goes to the
-    station whose picker, in the present state, needs the least time for the units still to be
-    picked there, including those of this order. The state is the picker's speed, learning and
-    fatigue. Stations without a picker come last. In scenarios without pickers, the time per unit is
-    the one that the layout gives for the station. Ties go to the station with the lowest number.
+    Orders are assigned in the sequence of their arrival; those that stock cannot serve are skipped.
+    Each goes to the station whose picker, with the present speed, learning and fatigue, needs the
+    least time for the units still to be picked there, including those of this order. Stations
+    without a picker come last. In scenarios without pickers, the time per unit is the one that the
+    layout gives for the station. Ties go to the station with the lowest number.
     """
 
     parameters_model = PickerLoadParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that arrived first, and a station by the time that its picker needs."""
+        """Choose the oldest order that stock can serve, and a station by its picker's time."""
         order = self.oldest_order()
         if order is None:
             return None

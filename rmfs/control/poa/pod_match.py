@@ -28,15 +28,18 @@ class PodMatch(BestPair[PodMatchParameters]):
     """Matches orders with pods that are coming anyway, for a high pile-on.
 
     The score of a pair of order and station is the number of the order's units that pods at the
-    station, or on their way there, have available in addition to what orders at the station need.
-    The pair with the highest score is assigned, then the next, until no slot is free. Ties are
-    broken by the tie-breaker, then by arrival, then by station number.
+    station, or on their way there, can supply in addition to what orders at the station still need.
+    The pair with the highest score is assigned, then the next, until no order can be assigned. Ties
+    are broken by the tie-breaker, then by arrival, then by station number.
     """
 
     parameters_model = PodMatchParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Return the units matched, (S, B); with `late_first`, late orders score highest."""
+        """Return how many units of each order the pods of each station can supply, shape (S, B).
+
+        With `late_first`, the scores of late orders are raised above those of all others.
+        """
         scores = matches(self.view, stations)
         if self.parameters.late_first:
             late = self.view.orders.due_s < self.view.now_s

@@ -55,19 +55,19 @@ class QueueParameters(Parameters):
 class Queue(PickOrderAssignment[QueueParameters]):
     """Assigns orders in two stages: first to the pool of a station, later to one of its slots.
 
-    1. Pools are filled with orders that stock can serve: the best pair of a station and an order,
-    then the next. PPS may choose pods for the orders of a pool, and bind them to these pods, before
-    the orders have a slot.
+    1. Pools are filled with orders that stock can serve, one at a time: of all pairs of an order
+    and a station, the best by `queue_criteria` is chosen. Pods may be fetched for the orders of a
+    pool, and their units bound to these pods, before the orders have a slot.
     2. Fast lane: at each station with a free slot and a pod at the head of its queue, orders that
     this pod completes get a slot: first those of the station's pool, then those in no pool.
-    3. The stations with a free slot besides the one reserved for the fast lane take turns: each
+    3. The stations that have a free slot (besides one reserved for the fast lane) take turns: each
     takes an order of its pool that stock can serve, until no station can take another.
 
     These steps are repeated until nothing changes. Only active stations have a pool. Units that
-    a station's present orders need do not count as available for further orders. Ties that the
-    criteria leave go to the order that arrived first, then to the station with the lowest number.
-    The rule is also called whenever a pod reaches the head of a queue, so that the orders for which
-    the pod was fetched can get slots.
+    a station's present orders need do not count as available for further orders. The parameters
+    give the criteria by which orders are chosen; remaining ties go to the order that arrived first,
+    then to the station with the lowest number. The rule is also called whenever a pod reaches the
+    head of a queue, so that the orders for which the pod was fetched can get slots.
     """
 
     parameters_model = QueueParameters

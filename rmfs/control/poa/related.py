@@ -1,4 +1,4 @@
-"""POA related: sends orders, by arrival, to the station whose orders need the same SKUs."""
+"""POA related: sends each order to the station whose orders have most SKUs in common with it."""
 
 from __future__ import annotations
 
@@ -21,18 +21,17 @@ class RelatedParameters(Parameters):
 
 
 class Related(Filling[RelatedParameters]):
-    """Groups orders for the same SKUs, so that a pod serves several of them.
+    """Groups orders for the same SKUs, so that one pod serves several orders.
 
-    Orders are taken by arrival; those that stock cannot serve are skipped. An order goes to the
-    station with the highest sum, over the orders there, of the number of SKUs in common with it,
-    including SKUs already picked for them. Ties are broken by the tie-breaker, then by station
-    number.
+    Orders are assigned in the sequence of their arrival; those that stock cannot serve are skipped.
+    Each goes to the station whose open orders have the most lines, picked or not, for SKUs of the
+    order to be assigned. Ties are broken by the tie-breaker, then by station number.
     """
 
     parameters_model = RelatedParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that arrived first, and a station by SKUs in common."""
+        """Choose the oldest order that stock can serve, and a station by SKUs in common."""
         order = self.oldest_order()
         if order is None:
             return None

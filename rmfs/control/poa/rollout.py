@@ -26,9 +26,9 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
 
     The base rule makes a default decision. This decision and the best other pairs of order and
     station (by `rmfs.control.features.RANKINGS`) are tried in copies of the run, in which the base
-    rule decides afterwards. The decision that did best is made, or the default decision if the
-    advantage over it is not certain enough (`certainty`). The pacing determines the simulated time
-    that trials take; meanwhile, no order is assigned.
+    rule makes all later assignments. The decision that did best replaces the default decision if
+    its advantage is certain enough (`certainty`). The pacing determines how much simulated time
+    passes in the run itself while trials are computed; meanwhile, no order is assigned.
     """
 
     parameters_model = RolloutParameters
@@ -52,7 +52,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
                 yield first
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best decision if still valid; if trials took simulated time, decide again."""
+        """Yield the best decision if still valid; if the answer took time, decide again."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide()

@@ -23,7 +23,7 @@ def first_row(
     tie_breaker: TieBreaker,
     draw: Callable[[int], int],
 ) -> int:
-    """Choose one of several rows of the backlog by a tie-breaker.
+    """Choose one of the given rows of the backlog by a tie-breaker.
 
     If due times are equal, the order that arrived first is chosen.
 

@@ -1,4 +1,4 @@
-"""POA wave: assigns the orders due first, among them the one that best matches arriving pods."""
+"""POA wave: assigns orders by due time and, if due together, by how well they match the pods."""
 
 from __future__ import annotations
 
@@ -34,16 +34,19 @@ class Wave(BestPair[WaveParameters]):
     """Fills free slots wave by wave, and within a wave by pod match.
 
     A wave consists of the orders that are due together, as for one truck. The rule takes the first
-    wave with an order that stock can serve, and assigns the pair of order and station with the most
-    units on pods at the station or on their way there, as POA `pod-match` does. When no order of
-    the wave can be assigned any more, the next wave begins. Ties are broken by the tie-breaker,
-    then by arrival, then by station number.
+    wave with an order that stock can serve, and assigns its orders as POA `pod-match` does: the
+    pair of order and station for which pods at the station, or on their way there, can supply the
+    most units comes first. When no order of the wave can be assigned any more, the next wave
+    begins. Ties are broken by the tie-breaker, then by arrival, then by station number.
     """
 
     parameters_model = WaveParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Return the units matched, (S, B); orders of the first wave score above all others."""
+        """Return the scores of POA `pod-match`, with a bonus for the first wave, shape (S, B).
+
+        With the bonus, orders of the first wave score above all others.
+        """
         scores = matches(self.view, stations)
         orders = self.view.orders
         servable = orders.servable(self.view.inventory.free_stock)

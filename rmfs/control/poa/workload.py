@@ -1,4 +1,4 @@
-"""POA workload: sends orders, by arrival, to the station with the fewest or most open orders."""
+"""POA workload: sends each order to the station with the fewest (or most) open orders."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ class WorkloadParameters(Parameters):
 class Workload(Filling[WorkloadParameters]):
     """Balances open orders over the stations, or fills one station after another.
 
-    Orders are taken by arrival; those that stock cannot serve are skipped. Ties between stations
-    are broken at random.
+    Orders are assigned in the sequence of their arrival; those that stock cannot serve are skipped.
+    Ties between stations are broken at random.
     """
 
     parameters_model = WorkloadParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the order that arrived first, and a station by its open orders."""
+        """Choose the oldest order that stock can serve, and a station by its open orders."""
         order = self.oldest_order()
         if order is None:
             return None

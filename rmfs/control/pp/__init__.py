@@ -1,4 +1,4 @@
-"""Path planning (PP): names and parameters of the planners, which run in the traffic core."""
+"""Path planning (PP): selection of a planner, which runs in the traffic core or in Python."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class PathPlanning(Controller[P]):
 
 
 class RollingParameters(Parameters):
-    """Parameters of rolling planners, which repeatedly plan all driving robots."""
+    """Parameters of rolling planners, which repeatedly plan paths for all driving robots."""
 
     period_s: float = pydantic.Field(1.0, gt=0)
     """Minimum simulated time, in seconds, between two calls of the planner."""
@@ -63,9 +63,9 @@ def planner_settings(choice: Choice, seed: int) -> PlannerSettings:
     Parameters
     ----------
     choice
-        Choice for the problem PP.
+        Controller chosen for PP, and its parameters.
     seed
-        Seed of the planner's random decisions, such as the moves of robots that resolve a deadlock.
+        Seed of the planner's random decisions, such as where a robot moves to resolve a deadlock.
     """
     controller = choice.controller
     assert issubclass(controller, PathPlanning)

@@ -17,7 +17,11 @@ class BcpParameters(RollingParameters):
 
 
 class Bcp(PathPlanning[BcpParameters]):
-    """BCP: plans quickest paths; where two conflict, the waypoint gets costlier for one robot."""
+    """BCP: plans quickest paths; conflicts make waypoints costlier.
+
+    If two paths conflict, the waypoint of the conflict becomes costlier for one of the two robots,
+    and a new path is planned for this robot.
+    """
 
     parameters_model = BcpParameters
     planner = "bcp"

@@ -27,7 +27,11 @@ class FarParameters(Parameters):
 
 
 class Far(PathPlanning[FarParameters]):
-    """FAR: moves robots along the free part of their next straight run; blocked ones evade."""
+    """FAR: moves robots along the free part of their next straight run.
+
+    A robot evades if it is blocked for long, or if it is in a cycle of robots that wait for each
+    other.
+    """
 
     parameters_model = FarParameters
     planner = "far"

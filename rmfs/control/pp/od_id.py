@@ -8,7 +8,7 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class OdIdParameters(RollingParameters):
-    """Parameters of PP OD&ID, most of which limit the effort of joint planning."""
+    """Parameters of PP OD&ID."""
 
     window_s: float = pydantic.Field(15.0, gt=0)
     """Horizon, in seconds, within which robots avoid each other."""

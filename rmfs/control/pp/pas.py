@@ -22,7 +22,7 @@ class PasParameters(RollingParameters):
 
 
 class Pas(PathPlanning[PasParameters]):
-    """PAS: extends all paths together; a robot that is stuck makes others take back decisions."""
+    """PAS: extends all paths in parallel; a robot that is stuck makes others take back moves."""
 
     parameters_model = PasParameters
     planner = "pas"

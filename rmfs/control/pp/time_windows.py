@@ -9,7 +9,7 @@ from rmfs.control.pp import PathPlanning
 
 
 class TimeWindowsParameters(Parameters):
-    """Parameters of PP time-windows, which limit the effort of a search."""
+    """Parameters of PP time-windows."""
 
     labels: int = pydantic.Field(50_000, ge=1)
     """Maximum number of labels (partial paths) in a search; if no path is found by then, the robot

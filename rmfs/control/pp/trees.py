@@ -8,7 +8,7 @@ from rmfs.control.pp import PathPlanning, RollingParameters
 
 
 class TreeParameters(RollingParameters):
-    """Parameters of PP CBS; two of them limit the search."""
+    """Parameters of PP CBS; `nodes` and `labels` limit the search."""
 
     nodes: int = pydantic.Field(60, ge=1)
     """Maximum number of nodes of the search tree per call."""

@@ -30,14 +30,18 @@ class WhcaVolatileParameters(WhcaParameters):
 
 
 class WhcaVolatile(PathPlanning[WhcaVolatileParameters]):
-    """WHCA*v: plans all robots anew in every call, and again if a robot finds no path."""
+    """WHCA*v: plans all robots anew in every call.
+
+    If no path is found for a robot, its priority rises, and all robots are planned again in a new
+    round.
+    """
 
     parameters_model = WhcaVolatileParameters
     planner = "whca-v"
 
 
 class WhcaPersistent(PathPlanning[WhcaParameters]):
-    """WHCA*n: plans the robots that need a path, around the existing reservations of the others."""
+    """WHCA*n: plans only robots that need a path, around the existing reservations of others."""
 
     parameters_model = WhcaParameters
     planner = "whca-n"

@@ -31,7 +31,7 @@ _REACH: dict[Requests, int] = {
 
 
 class LateBinding(Parameters):
-    """Parameters of every PPS rule. Orders are queued (in a station's pool) only by POA `queue`."""
+    """Parameters of every PPS rule. Pools of stations are filled only by POA `queue`."""
 
     late_picks: bool = True
     """Whether units of new orders are bound to a pod that is already on its way to their
@@ -63,8 +63,8 @@ class PodSelection(Controller[P]):
     """Chooses pods for robots that TA sends to work for a station.
 
     TA asks which pod a robot should fetch and bring to a station, or to which station a carried pod
-    should go next. The simulation then binds the requests (units that orders need) that the pod can
-    serve there.
+    should go next. The simulation then binds requests (units that orders need) to the pod: as many
+    as it can serve there.
     """
 
     problem = Problem.PPS
@@ -78,11 +78,11 @@ class PodSelection(Controller[P]):
 
     @abstractmethod
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
-        """Choose an available pod with units that orders at the station need; -1: none."""
+        """Choose an available pod with units that orders at the station need, or -1 for no pod."""
 
     @abstractmethod
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int | By[int]:
-        """Choose an available pod for which bundles wait at the station; -1: none."""
+        """Choose an available pod for which bundles wait at the station, or -1 for no pod."""
 
     @abstractmethod
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int | By[int]:

@@ -111,7 +111,7 @@ class PickCandidates(Candidates):
     queued
         The queued orders whose requests count.
     requests
-        Whose requests count (`rmfs.control.pps.Requests`).
+        Which orders' requests count (`rmfs.control.pps.Requests`).
     """
 
     def __init__(
@@ -158,8 +158,8 @@ class PickCandidates(Candidates):
     def queued_units(self) -> NDArray[np.int64]:
         """Return how many open requests of queued orders each pod can serve, shape (C,).
 
-        With `assigned-and-completable`, only orders that the pod completes count (`completed`).
-        Otherwise, units that assigned orders need from the pod are not available to queued orders.
+        If `requests` is `assigned-and-completable`, only the queued orders that the pod completes
+        count (see `completed`). Otherwise, queued orders get what assigned orders leave on the pod.
         """
         if self.requests == "assigned-and-completable":
             done = self.completed()
@@ -172,7 +172,7 @@ class PickCandidates(Candidates):
         return served
 
     def completed(self) -> Completed:
-        """Return which orders each pod completes, that is, whose open requests it serves entirely.
+        """Return which orders each pod completes: those all of whose open requests it can serve.
 
         Assigned orders are considered in the sequence of their assignment, then queued ones in the
         sequence in which they were queued. An order takes its units from the pod only if the pod
@@ -207,8 +207,8 @@ def pick_candidates(
     Parameters
     ----------
     requests
-        Whose requests count. Queued orders never count while the station has no free slot, because
-        a pod might be brought in vain.
+        Which orders' requests count. Queued orders never count while the station has no free slot,
+        because a pod might be brought in vain.
     """
     skus = list(station.requests.lines)
     queued: list[Order] = []

@@ -36,11 +36,14 @@ class PodCriterion(Parameters):
     """Base class of the criteria for the choice of a pod."""
 
     def prepare(self, view: View) -> None:
-        """Request the trackers that the criterion needs; called when the controller is created."""
+        """Request the trackers (shared statistics) that the criterion needs.
+
+        Called when the controller is created.
+        """
 
 
 class RandomCriterion(PodCriterion):
-    """Prefers a random pod; optionally, pods on the tiers of robot and station come first."""
+    """Prefers a random pod; by default, pods on the robot's or the station's tier come first."""
 
     criterion: Literal["random"] = "random"
     prefer_same_tier: bool = True
@@ -89,7 +92,7 @@ class Nearest(CongestionParameters, PodCriterion):
 
 
 class Fill(PodCriterion):
-    """Prefers the fullest, or the emptiest, pod."""
+    """Prefers full pods, or empty ones."""
 
     criterion: Literal["fill"] = "fill"
     prefer_fullest: bool = True
@@ -100,7 +103,7 @@ class Fill(PodCriterion):
     """Share of used capacity that separates full pods from empty ones."""
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Return the share of used capacity, with a minus sign if empty pods are preferred.
+        """Return the used share of each pod's capacity, negative if empty pods are preferred.
 
         With `binary`, return 1 for pods on the preferred side of the threshold, and 0 for others.
         """
@@ -113,12 +116,12 @@ class Fill(PodCriterion):
 
 
 class PickDemand(PodCriterion):
-    """Prefers the pod with the most units that orders in the backlog or at any station need."""
+    """Prefers the pod with the most units in demand for orders at any station or in the backlog."""
 
     criterion: Literal["demand"] = "demand"
 
     def prepare(self, view: View) -> None:
-        """Request the tracker that counts needed units."""
+        """Request the tracker that counts the units in demand on each pod."""
         view.trackers.get(DemandOnPods, "unbound")
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
@@ -144,11 +147,11 @@ class Completeable(PodCriterion):
 
 
 class PickWorkAmount(PodCriterion):
-    """Prefers the pod with the most work at the station, minus a cost of travel.
+    """Prefers the pod for which the work at the station, minus a cost of travel, is greatest.
 
     The work is the total value of the requests that the pod can serve. `metric` selects the value
-    of a request: 1, the time that its order has been at the station, or the lateness of its order;
-    time and lateness are divided by the number of the order's open requests
+    of a request: 1 (`picks`), the time since its order was assigned (`age`), or the lateness of its
+    order (`lateness`); time and lateness are divided by the number of the order's open requests
     (`rmfs.control.pps.requests.value_of`). In a controllers file, the names `pile-on`, `age` and
     `lateness` stand for this criterion with the metric `picks`, `age` or `lateness`, respectively.
     """
@@ -233,7 +236,7 @@ class WaveWork(PodCriterion):
     """Orders due within this many seconds after the next due order belong to its wave."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Return the units that the pod can serve for assigned orders of the first wave."""
+        """Return the number of units that the pod has for assigned orders of the first wave."""
         orders = candidates.pick_station.orders.values()
         coming = [order.due_s for order in orders if order.due_s >= candidates.view.now_s]
         last_s = min(coming, default=candidates.view.now_s) + self.wave_s
@@ -241,7 +244,10 @@ class WaveWork(PodCriterion):
 
 
 class BundleWorkAmount(PodCriterion):
-    """Prefers the pod with the most bundles, or the longest total waiting time, at the station."""
+    """Prefers the pod for which the most bundles wait at the station.
+
+    With `age`, each bundle is weighted by its waiting time.
+    """
 
     criterion: Literal["work-amount"] = "work-amount"
     age: bool = False
@@ -278,7 +284,7 @@ class BundleDemand(PodCriterion):
     criterion: Literal["demand"] = "demand"
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Return the sum over waiting bundles of min(units, open requests for the SKU)."""
+        """Return the sum over the waiting bundles of min(units, open requests for their SKU)."""
         view = candidates.view
         station = candidates.station.number
         waiting = view.replenishment_stations[station].waiting
@@ -342,7 +348,7 @@ def by_name(value: Any) -> Any:
     """Replace the name of a criterion by a table that selects it with default parameters.
 
     The names `pile-on`, `age` and `lateness`, alone or in a table, are replaced by `work-amount`
-    with the metric `picks`, `age` or `lateness`, respectively. Other values are returned unchanged.
+    with the metric `picks`, `age` or `lateness`, respectively. Other tables are returned unchanged.
     """
     given = {"criterion": value} if isinstance(value, str) else value
     if isinstance(given, dict) and given.get("criterion") in _SHORT:

@@ -1,4 +1,4 @@
-"""PPS lexicographic: applies criteria in order of priority, each to the ties that are left."""
+"""PPS lexicographic: applies criteria in order of priority; each breaks the ties left before."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ AtLeastOne = pydantic.Field(min_length=1)
 
 
 class Criterion(Protocol):
-    """Rates the pods of `rmfs.control.pps.candidates`; the highest score wins."""
+    """Rates candidate pods (`rmfs.control.pps.candidates`); the highest score wins."""
 
     def score(self, candidates: Any, rng: np.random.Generator) -> np.ndarray[Any, Any]:
         """Return the scores of all candidates, shape (C,)."""
@@ -87,17 +87,17 @@ class Lexicographic(PodSelection[LexicographicParameters]):
             criterion.prepare(view)
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Choose a pod by the criteria for pick stations."""
+        """Choose a pod by the criteria in the parameter `pick_pod`."""
         candidates = pick_candidates(self.view, robot, station, self.parameters.consider)
         return self._best(candidates, self.parameters.pick_pod)
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:
-        """Choose a pod by the criteria for replenishment stations."""
+        """Choose a pod by the criteria in the parameter `replenishment_pod`."""
         candidates = replenishment_candidates(self.view, robot, station)
         return self._best(candidates, self.parameters.replenishment_pod)
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Choose a station by the criteria for stations."""
+        """Choose a station by the criteria in the parameter `next_station`."""
         left = list(stations)
         for criterion in self.parameters.next_station:
             if len(left) == 1:

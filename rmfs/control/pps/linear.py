@@ -46,8 +46,8 @@ class LinearParameters(LateBinding):
 class Linear(PodSelection[LinearParameters]):
     """Chooses the pod, or the next station, with the greatest weighted sum of features.
 
-    Ties go to the pod or station with the lowest number. Pods are chosen for assigned orders and
-    for orders in the station's pool that they complete, regardless of `consider`.
+    Ties go to the pod or station with the lowest number. Regardless of `consider`, pods are chosen
+    for orders assigned to the station, and for orders in its pool that the pod completes.
     """
 
     parameters_model = LinearParameters

@@ -22,7 +22,7 @@ class RandomPodParameters(LateBinding):
 
 
 class RandomPod(PodSelection[RandomPodParameters]):
-    """Draws a pod with work at the station, or the next station of a carried pod."""
+    """Draws one of the pods with work at the station; also draws a carried pod's next station."""
 
     parameters_model = RandomPodParameters
 

@@ -18,10 +18,10 @@ def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool
     Parameters
     ----------
     metric
-        `picks`: the value is 1. `age`: the seconds since the order was assigned (if it is only
-        queued: since it was queued), divided by the number of its open requests. `lateness`: the
-        seconds since its due time, negative before, divided by the number of its open requests;
-        after the due time, also multiplied by the weight of the order's class.
+        `picks`: the value is 1. `age`: the seconds since the order was assigned (if it is only in
+        a station's pool: since it was put there), divided by the number of its open requests.
+        `lateness`: the seconds since its due time, negative before, divided by the number of its
+        open requests; after the due time, also multiplied by the weight of the order's class.
     positive
         Whether lateness is 0 instead of negative before the due time.
     """

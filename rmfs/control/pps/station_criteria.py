@@ -66,7 +66,12 @@ class MostWork(Parameters):
     def score(
         self, view: View, robot: Robot, stations: Sequence[int], rng: np.random.Generator
     ) -> NDArray[np.float64]:
-        """Return the value of the pod's servable requests, or the number or age of its bundles."""
+        """Return the amount of work for the pod at each station.
+
+        At a pick station, this is the value of the requests that the pod can serve; at a
+        replenishment station, the number of bundles that wait for the pod or, with `bundle_age`,
+        their total waiting time in s.
+        """
         return np.array([self._work(view, robot.pod, station) for station in stations], float)
 
     def _work(self, view: View, pod: int, station: int) -> float:

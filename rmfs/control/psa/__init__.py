@@ -24,8 +24,8 @@ P = TypeVar("P", bound=Parameters)
 class PodStorageAssignment(Controller[P]):
     """Chooses the storage location for a pod that a robot has to store.
 
-    The choice is among those of `view.storage.places` that are empty (`view.storage.is_empty`). The
-    location is reserved immediately.
+    The choice is among the storage locations (`view.storage.places`) that are empty
+    (`view.storage.is_empty`). The location is reserved immediately.
     """
 
     problem = Problem.PSA
@@ -52,7 +52,7 @@ class PodStorageAssignment(Controller[P]):
         Returns
         -------
         int
-            The waypoint of the location; -1 if none may be chosen or all costs are infinite.
+            The waypoint of the location; -1 if no location that may be chosen has a finite cost.
         """
         masked = np.where(among, costs, np.inf)
         best = int(masked.argmin())

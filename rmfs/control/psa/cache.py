@@ -1,4 +1,4 @@
-"""PSA cache: stores useful pods in a cache near the nearest pick station, the others elsewhere."""
+"""PSA cache: stores useful pods in the cache of the nearest pick station, others outside caches."""
 
 from __future__ import annotations
 
@@ -27,13 +27,15 @@ class CachePlaceParameters(CacheParameters):
 class Cache(PodStorageAssignment[CachePlaceParameters]):
     """Stores useful pods in the cache of the nearest pick station, and other pods outside caches.
 
-    The station is the one nearest to the pod by Euclidean distance, even if the pod comes from a
-    replenishment station. Two shares decide whether the pod deserves a place in this station's
-    cache: the share of the cache that is free, and the share of the pods in the cache that have a
-    lower score (weighted sum of utility and speed) than this pod. The weighted mean of the two
-    shares must be above a threshold.
+    A cache consists of storage locations near a pick station (`rmfs.control.trackers.zones`). The
+    pick station considered is the one nearest to the pod by Euclidean distance, even if the pod
+    comes from a replenishment station. Two shares decide whether the pod deserves a place in this
+    station's cache: the share of the cache that is free, and the share of the pods in the cache
+    that have a lower score than this pod. The weighted mean of the two shares must be above a
+    threshold. The score of a pod is the weighted mean of its utility and speed
+    (`rmfs.control.trackers.pod_scores`).
 
-    A pod that deserves a place is stored in this cache; if that is full, outside all caches; if all
+    A pod that deserves a place is stored in that cache; if it is full, outside all caches; if all
     locations outside are occupied, too, in another cache. Any other pod is stored outside all
     caches or, if all locations outside are occupied, in any cache. Among the empty storage
     locations of the area chosen, the one nearest to the station is taken; ties go to the waypoint
@@ -51,7 +53,7 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
         self._stations = np.array([station.waypoint for station in view.pick_stations])
 
     def place(self, robot: Robot) -> int:
-        """Choose a storage location in the zone that suits the pod, or else in other zones."""
+        """Choose a storage location in the area that suits the pod, or else in another area."""
         empty, cache_of = self.view.storage.is_empty, self._caching.zones.cache_of
         station = int(self.view.travel.metres(robot.waypoint, self._stations).argmin())
         outside = cache_of < 0

@@ -46,7 +46,7 @@ class Caching:
     zones
         The zones of all storage locations.
     cache_at
-        Station to whose cache each waypoint belongs, or -1, shape (N,).
+        Pick station to whose cache each of the N waypoints belongs, -1 for none, shape (N,).
     """
 
     def __init__(self, view: View, parameters: CacheParameters) -> None:
@@ -58,7 +58,7 @@ class Caching:
         self.cache_at[view.storage.places] = self.zones.cache_of
 
     def scores(self) -> NDArray[np.float64]:
-        """Return the weighted scores of all pods, 0 to 1, shape (P,)."""
+        """Return each pod's weighted mean of utility and speed, from 0 to 1, shape (P,)."""
         given = self._parameters
         return self._scores.scores(given.utility_weight, given.speed_weight)
 

@@ -37,7 +37,7 @@ class PlaceDistances:
         return distances
 
     def to_nearest(self, waypoints: list[int]) -> NDArray[np.float64]:
-        """Return the distance from each location to the nearest given waypoint, shape (L,)."""
+        """Return each location's distance to the nearest of the given waypoints, shape (L,)."""
         least = np.full(len(self._places), np.inf)
         for waypoint in waypoints:
             to = self._travel.distances_to(waypoint, self._metric)[self._places]

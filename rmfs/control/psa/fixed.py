@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 class Fixed(PodStorageAssignment[NoParameters]):
     """Stores every pod at the storage location where it stood at the start of the run.
 
-    If that location is occupied, the pod is stored at the nearest empty one by travel time. This
-    can happen if another rule (repositioning, or a PSA rule installed earlier) has stored a pod
-    there, or if a robot rests there because there is no pod to rest beneath.
+    If that location is occupied, the pod is stored at the nearest empty one by travel time. The
+    location can be occupied by a pod that another rule (repositioning, or a PSA rule installed
+    earlier) has stored there, or by a robot that rests there because there is no pod to rest
+    beneath.
     """
 
     def __init__(self, parameters: NoParameters, view: View, rng: np.random.Generator) -> None:

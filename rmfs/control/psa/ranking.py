@@ -55,9 +55,9 @@ class Ranking:
 
     The P pods are sorted by score, the highest first (ties by number), and the places by
     prominence, the most prominent first; positions are counted from 0. The pod at position r
-    belongs on the place at position floor(r x (P + b) / P), or on the last place if there are fewer
-    places. Here b is the share `place_buffer` of the number of places, rounded down. The rank of
-    the place is the pod's target; places of equal prominence share a rank.
+    belongs on the place at position floor(r x (P + b) / P), or on the last place if that position
+    does not exist. Here b is `place_buffer` times the number of places, rounded down. The rank of
+    this place is the pod's target rank; places of equal prominence share a rank.
     """
 
     def __init__(self, view: View, parameters: RankParameters) -> None:
@@ -72,7 +72,7 @@ class Ranking:
         self._target_of_rank = self.prominence.rank[in_order[number]]
 
     def scores(self) -> NDArray[np.float64]:
-        """Return the weighted scores of all pods, 0 to 1, shape (P,)."""
+        """Return each pod's weighted mean of utility and speed, from 0 to 1, shape (P,)."""
         given = self._parameters
         return self._scores.scores(given.utility_weight, given.speed_weight)
 
@@ -90,11 +90,11 @@ class Ranking:
         return targets
 
     def seen(self, target: int) -> NDArray[np.bool_]:
-        """Return which places are empty and found in the search from a target, shape (L,).
+        """Return which empty places the search from a target rank finds, shape (L,).
 
-        Ranks are searched outward from the target, the next better before the next worse. Ranks
-        that do not exist count as searched. The search ends when at least `corridor` ranks have
-        been searched and an empty place has been found.
+        Ranks are searched outward from the target, the next better before the next worse. The
+        search ends when an empty place has been found and at least `corridor` ranks have been
+        searched; ranks beyond the first or the last count, too.
         """
         away = self.prominence.rank - target
         look = 2 * np.abs(away) - (away < 0)

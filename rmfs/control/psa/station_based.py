@@ -27,7 +27,7 @@ class StationBasedParameters(Parameters):
 
 
 class StationBased(PodStorageAssignment[StationBasedParameters]):
-    """Chooses the empty storage location nearest to any pick (or any replenishment) station.
+    """Chooses the empty storage location nearest to a pick (or replenishment) station.
 
     The position of the pod has no effect. Ties go to the waypoint with the lowest number.
     """

@@ -32,9 +32,9 @@ class TurnoverPlaceParameters(TurnoverParameters):
 class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):
     """Chooses an empty storage location of the pod's turnover class, or else of another class.
 
-    If the class has no empty location, the next slower class is tried, then the next faster one,
-    then the class after the next slower one, and so on. Ties within a class go to the
-    waypoint with the lowest number.
+    If that class has no empty location, other classes are tried: one class slower, one faster, two
+    slower, two faster, and so on. The parameter `within_class` determines the choice within a
+    class; ties go to the waypoint with the lowest number.
     """
 
     parameters_model = TurnoverPlaceParameters
@@ -50,7 +50,7 @@ class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):
         self._to_station = self._distances.to_nearest(stations)
 
     def place(self, robot: Robot) -> int:
-        """Choose a storage location of the pod's own class, or else of other classes."""
+        """Choose an empty storage location of the pod's class, or else of another; -1 if none."""
         empty = self.view.storage.is_empty
         place_class = self._classes.place_class
         for number in _outward(int(self._classes.pod_class[robot.pod]), self._classes.classes):

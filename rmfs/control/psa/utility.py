@@ -16,12 +16,14 @@ if TYPE_CHECKING:
 
 
 class Utility(PodStorageAssignment[RankParameters]):
-    """Ranks pods by score and places by prominence, and chooses a place of the matching rank.
+    """Ranks pods by score and places by prominence, and chooses a place whose rank suits the pod.
 
-    Places are storage locations; the most prominent one is nearest to a pick station. A pod's
-    target rank is the rank of the place that corresponds to the pod's position among all pods. The
-    rule searches ranks outward from it. Of the empty places found, the one with the least travel
-    time from the robot is chosen; ties go to the lowest waypoint number.
+    The score of a pod is the weighted mean of its utility (the number of its units that orders
+    need) and its speed (how often its SKUs are ordered). Places are storage locations; the most
+    prominent one is nearest to a pick station. A pod's target rank is the rank of the place that
+    corresponds to the pod's position in the order of scores. Ranks are searched for empty places,
+    outward from the target rank. Of the empty places found, the one with the least travel time from
+    the robot is chosen; ties go to the lowest waypoint number.
     """
 
     parameters_model = RankParameters

@@ -23,14 +23,14 @@ Seconds = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class Move(NamedTuple):
-    """An available stored pod, and the empty storage location (waypoint) to which to move it."""
+    """The move of an available stored pod to an empty storage location (`place`, a waypoint)."""
 
     pod: int
     place: int
 
 
 def nearest_place(view: View, pod: int, among: NDArray[np.bool_], metric: Metric) -> int:
-    """Find the storage location nearest to that of a pod; ties go to the lowest waypoint number.
+    """Find the storage location nearest to a stored pod; ties go to the lowest waypoint number.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def nearest_place(view: View, pod: int, among: NDArray[np.bool_], metric: Metric
 
 
 class Pauses(Parameters):
-    """Parameters of every rule that moves pods."""
+    """Common parameters of the repositioning rules that move pods."""
 
     robot_pause_s: Seconds = 15.0
     """Seconds after a robot has got a move before it may get another move."""
@@ -79,7 +79,10 @@ class Repositioning(Controller[P]):
         """Choose a pod and its new storage location; None if no move is worthwhile."""
 
     def is_ready(self, robot: Robot) -> bool:
-        """Return whether `move` should be called for this robot now; this must be very fast."""
+        """Return whether `move` should be called for this robot now.
+
+        Implementations must be very fast.
+        """
         return True
 
 
@@ -89,9 +92,10 @@ Q = TypeVar("Q", bound=Pauses)
 class Pausing(Repositioning[Q]):
     """Base class of rules that pause after moves and after unsuccessful searches.
 
-    A move is followed by a pause for the robot on whose behalf TA asked; an unsuccessful search is
-    followed by a pause for all robots. After an unsuccessful search, or if a pause has prevented a
-    search, TA is asked for decisions again when the pause ends.
+    During a pause, the rule does not search for moves. The pause after a move applies only to the
+    robot on whose behalf TA asked; the pause after an unsuccessful search applies to all robots.
+    When a pause ends that followed an unsuccessful search or prevented a search, TA is asked for
+    decisions again.
     """
 
     def __init__(self, parameters: Q, view: View, rng: np.random.Generator) -> None:
@@ -116,7 +120,7 @@ class Pausing(Repositioning[Q]):
         return found
 
     def is_ready(self, robot: Robot) -> bool:
-        """Return whether no pause is in progress for the robot."""
+        """Return whether no pause applies to the robot now."""
         ready_s = max(self._search_from_s, self._robot_from_s[robot.index])
         if self.view.now_s >= ready_s:
             return True
@@ -124,7 +128,7 @@ class Pausing(Repositioning[Q]):
         return False
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s at which TA is asked again as a pause ends, or inf."""
+        """Return the simulated time in s when TA is asked again because a pause ends, or inf."""
         if self._again_s <= self.view.now_s:
             self._again_s = inf
         return self._again_s

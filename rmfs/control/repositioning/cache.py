@@ -54,17 +54,24 @@ class _Pairs(NamedTuple):
 
 
 class Cache(Pausing[CacheMoveParameters]):
-    """Keeps a given number of storage locations of each pick station's cache free.
+    """Keeps a given number of storage locations free in the cache of each pick station.
 
-    If more are free, a pod from outside all caches is moved in. The choice is made by the following
-    criteria, each of which breaks the ties of those before: the pod is on the robot's tier; it can
-    serve the most units that the station's orders need; it has the most units in demand; it is the
-    fullest; its move is the shortest, compared for at most 32 pairs of station and pod.
+    The cache of a pick station consists of storage locations near it. There may also be drop-off
+    zones (`drop_off_places`): the storage locations that robots reach fastest from the pick
+    stations.
 
-    If fewer are free, a pod of the cache is moved out. The criteria are: it is on the robot's tier;
-    it has the fewest units that the station's orders need; it has the fewest units in demand; it is
-    the emptiest; it is the nearest to a pick station. It goes to the nearest storage location
-    outside all zones or, if it is almost empty, to the one nearest to a replenishment station.
+    If a cache has more free locations than it should, a pod from outside all caches is moved in.
+    Pod and cache are chosen by the following criteria, each of which breaks the ties left by those
+    before: the pod is on the robot's tier; it can serve the most units that orders at the station
+    of the cache need; it holds the most units in demand (see `count_backlog`); it is the fullest;
+    its move is the shortest, compared for at most 32 pairs of pod and cache.
+
+    If a cache has fewer free locations than it should, one of its pods is moved out. The criteria
+    are: it is on the robot's tier; it can serve the fewest units that orders at the station of its
+    cache need; it holds the fewest units in demand; it is the emptiest; it is the nearest to a pick
+    station. The pod goes to the nearest storage location outside all caches and drop-off zones or,
+    if it is almost empty (`empty_below`), to the one of these locations that is nearest to a
+    replenishment station.
 
     Moves into a cache come before moves out of a cache. Lengths of moves are Manhattan distances;
     distances to a station are travel times. Remaining ties go to the pod with the lowest number,
@@ -90,7 +97,7 @@ class Cache(Pausing[CacheMoveParameters]):
             np.minimum(self._to_replenishment, to, out=self._to_replenishment)
 
     def find(self, robot: Robot) -> Move | None:
-        """Search for a pod to move in, then for one to move out."""
+        """Search for a pod to move into a cache or, if there is none, for one to move out."""
         free = self._zones.cache_size - self._zones.occupied()
         wanted = np.minimum(self.parameters.free_places, self._zones.cache_size)
         pods = self.view.storage.is_at_hand.nonzero()[0]

@@ -33,18 +33,23 @@ class CacheDropOffParameters(CacheParameters, Pauses):
 class CacheDropOff(Pausing[CacheDropOffParameters]):
     """Clears drop-off zones, then fills or thins out the caches.
 
-    Stations are considered in order of the absolute difference between the actual and the target
-    number of occupied storage locations in their cache, the largest first. If the drop-off zone of
-    a station holds pods, the one with the highest score is moved: into the cache of the station if
-    it deserves a place there (as in PSA `cache`) and there is room, and otherwise outside all
-    zones.
+    The drop-off zone of a pick station consists of the storage locations that robots reach fastest
+    from it; its cache consists of other storage locations near it. PSA `cache` explains the score
+    of a pod, and when a pod deserves a place in a cache.
 
-    If no pod in a drop-off zone can be moved, the caches are considered. If a cache has too few
-    pods, the pod outside all zones that has the highest score is moved in, provided that it
-    deserves a place. If a cache has too many, its pod with the lowest score is moved outside all
-    zones.
-    Nothing is moved into a drop-off zone. A pod goes to the nearest storage location of its new
-    zone; ties go to the lowest number.
+    Stations are considered in order of the absolute difference between the actual and the target
+    number (see `target_fill`) of occupied storage locations in their cache, the largest difference
+    first. If the drop-off zone of a station holds pods, the one with the highest score is moved:
+    into the cache of the station if the pod deserves a place there and there is room, and otherwise
+    outside all caches and drop-off zones.
+
+    If no pod in a drop-off zone can be moved, the caches are considered, in the same order. If a
+    cache has too few pods, the pod with the highest score of those outside all caches and drop-off
+    zones is moved in, provided that it deserves a place. If a cache has too many, its pod with the
+    lowest score is moved outside all caches and drop-off zones.
+
+    Nothing is moved into a drop-off zone. A pod goes to the nearest empty storage location of the
+    area to which it is moved. Ties go to the lowest number.
     """
 
     parameters_model = CacheDropOffParameters
@@ -62,7 +67,7 @@ class CacheDropOff(Pausing[CacheDropOffParameters]):
         self._drop_off_at[places] = self._zones.drop_off_of
 
     def find(self, robot: Robot) -> Move | None:
-        """Search for a pod in a drop-off zone, then for a cache off its target."""
+        """Search for a pod in a drop-off zone, then for a cache with too few or too many pods."""
         storage = self.view.storage
         pods = storage.is_at_hand.nonzero()[0]
         if self.parameters.same_tier:

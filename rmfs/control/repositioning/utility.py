@@ -1,4 +1,4 @@
-"""Repositioning utility: moves the pod whose place differs most from its target rank."""
+"""Repositioning utility: moves the pod whose place is farthest from the pod's target rank."""
 
 from __future__ import annotations
 
@@ -25,13 +25,14 @@ class UtilityParameters(RankParameters, Pauses):
 
 
 class Utility(Pausing[UtilityParameters]):
-    """Moves the pod with the largest difference between the rank of its place and its target rank.
+    """Moves the pod for which the rank of its place differs most from the pod's target rank.
 
-    Pods and places (storage locations) are ranked as in PSA `utility`, and empty places are
-    searched outward from the pod's target rank in the same way. Of the places found, the one
+    The ranks of places (storage locations), the target ranks of pods, and the search for empty
+    places outward from a pod's target rank are as in PSA `utility`. Of the places found, the one
     nearest to the pod by Manhattan distance is chosen; ties go to the waypoint with the lowest
-    number. The pod is moved only if this reduces the difference. Otherwise, the pod with the next
-    largest difference is tried, up to eight pods. Ties go to the pod with the lowest number.
+    number. The pod is moved only if this reduces the difference of the ranks. Otherwise, the pod
+    with the next largest difference is tried; at most eight pods are tried in one search. If the
+    differences of several pods are equal, the pod with the lowest number comes first.
     """
 
     parameters_model = UtilityParameters
@@ -41,7 +42,7 @@ class Utility(Pausing[UtilityParameters]):
         self._ranking = Ranking(view, parameters)
 
     def find(self, robot: Robot) -> Move | None:
-        """Search for the pod farthest from its target rank."""
+        """Search for a pod to move, beginning with the one farthest from its target rank."""
         storage = self.view.storage
         rank_at = np.zeros(self.view.layout.waypoints, np.intp)
         rank_at[storage.places] = self._ranking.prominence.rank

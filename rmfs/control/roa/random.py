@@ -29,8 +29,9 @@ class RandomStationParameters(Parameters):
 class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
     """Sends bundles in order of arrival to random active stations with room.
 
-    By default, the last station is chosen again as long as it has room. The rule does not wait
-    until RPS has chosen a pod for the bundle. A bundle waits if no station has room.
+    By default, the station drawn last is chosen again as long as it is active and has room. The
+    rule does not wait until RPS has chosen a pod for the bundle. A bundle waits if no active
+    station has room for it.
     """
 
     parameters_model = RandomStationParameters
@@ -42,7 +43,7 @@ class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
         self._last: ReplenishmentStation | None = None
 
     def decide(self) -> Iterator[SendBundle]:
-        """Yield assignments until no waiting bundle fits into any station."""
+        """Yield assignments until no waiting bundle fits into any active station."""
         if not self.view.bundles.without_station:
             return
         stations = [station for station in self.view.replenishment_stations if station.active]

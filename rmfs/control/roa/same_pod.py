@@ -52,8 +52,8 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
     the one with the shortest straight-line distance from the pod's current position is chosen, even
     if the pod is being carried. Ties go to the station with the lowest number.
 
-    An empty station that is smaller than the batch may be chosen, too. It then gets as many bundles
-    of the batch as fit.
+    An empty station may be chosen even if the batch exceeds its capacity. It then gets as many
+    bundles of the batch as fit.
 
     With `break_batches`, bundles are sent one by one. A bundle goes to the station to which the
     previous bundle for its pod was sent. If that station has no room or is switched off, the bundle

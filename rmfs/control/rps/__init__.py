@@ -1,4 +1,4 @@
-"""Replenishment pod selection (RPS): the pod a bundle goes to, and when the bundle is released."""
+"""Replenishment pod selection (RPS): which pod gets a bundle, and when the bundle is released."""
 
 from __future__ import annotations
 
@@ -21,8 +21,9 @@ class ReplenishmentPodSelection(Controller[P]):
     """Chooses pods for the bundles of `view.bundles.without_pod`.
 
     Promising a bundle to a pod reserves space for it on the pod immediately. ROA and TA may act on
-    the promise only after the bundle has been released. Until then, further bundles can be promised
-    to the pod, so that one trip serves all of them (`view.bundles.unreleased`).
+    the promise only after the bundle has been released. Until then, the bundle is listed in
+    `view.bundles.unreleased`, and further bundles can be promised to the pod, so that one trip
+    serves all of them.
     """
 
     problem = Problem.RPS
@@ -32,5 +33,6 @@ class ReplenishmentPodSelection(Controller[P]):
     def decide(self) -> Iterator[PromiseBundle | ReleasePod | SendBundle | Ask[Any] | By[Any]]:
         """Yield promises and releases until there is nothing more to decide now.
 
-        A rule that also decides ROA chooses the stations of a pod's bundles after their release.
+        A controller that also decides ROA yields the stations of a pod's bundles after their
+        release.
         """

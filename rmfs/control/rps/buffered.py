@@ -29,9 +29,9 @@ P = TypeVar("P", bound=Parameters)
 class Buffered(ReplenishmentPodSelection[P]):
     """Promises bundles to pods one by one, and releases the bundles of a pod together.
 
-    They are released when enough of the pod's capacity is used or promised (`threshold`), or a
-    certain time after the last promise to the pod (`timeout_s`). This also holds for bundles that a
-    former rule promised but did not release.
+    The bundles of a pod are released when enough of the pod's capacity is used or promised
+    (`threshold`), or a certain time after the last promise to the pod (`timeout_s`). The same holds
+    for bundles that were promised, but not released, by another rule that this one has replaced.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -44,11 +44,11 @@ class Buffered(ReplenishmentPodSelection[P]):
 
     @abstractmethod
     def threshold(self, pod: int) -> float:
-        """Return the share of capacity that must be used or promised to release a pod's bundles."""
+        """Return the used or promised share of capacity at which a pod's bundles are released."""
 
     @abstractmethod
     def timeout_s(self, pod: int) -> float:
-        """Return how long after the last promise to a pod its bundles are released, in s."""
+        """Return the time in s from the last promise to a pod until its bundles are released."""
 
     @property
     @abstractmethod
@@ -125,7 +125,7 @@ class Buffered(ReplenishmentPodSelection[P]):
 
 
 class BufferParameters(Parameters):
-    """Parameters of RPS rules with a buffer."""
+    """Parameters of RPS rules that hold bundles back."""
 
     buffer_threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
     """The bundles promised to a pod are released to ROA when this share of its capacity is used or
@@ -148,7 +148,7 @@ S = TypeVar("S", bound=StickyParameters)
 
 
 class EvenlyBuffered(Buffered[B]):
-    """Buffers bundles with the same threshold and the same time-out for all pods."""
+    """Base class of rules with the same threshold and the same time-out for all pods."""
 
     def threshold(self, pod: int) -> float:
         """Return the threshold (share of capacity) of all pods, `buffer_threshold`."""

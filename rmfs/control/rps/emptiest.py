@@ -1,4 +1,4 @@
-"""RPS emptiest: chooses the pod with the lowest share of its capacity used or promised."""
+"""RPS emptiest: chooses the pod whose used or promised share of capacity is the smallest."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ if TYPE_CHECKING:
 
 
 class Emptiest(Sticky[StickyParameters]):
-    """Chooses the pod with the lowest share of its capacity used or promised.
+    """Chooses the pod whose used or promised share of capacity is the smallest.
 
-    All pods are candidates, wherever they are. Ties go to the pod with the lowest number.
+    All pods with room are candidates, wherever they are. Ties go to the pod with the lowest number.
+    By default, the chosen pod is kept for further bundles until one of them does not fit or a
+    replenishment station serves the pod (`stick_to_pod`).
     """
 
     parameters_model = StickyParameters

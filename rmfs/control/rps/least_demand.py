@@ -13,12 +13,14 @@ if TYPE_CHECKING:
 
 
 class LeastDemand(Sticky[StickyParameters]):
-    """Chooses the pod with the least demand for its SKUs: the pod that pickers will miss least.
+    """Chooses the pod with the least demand for its SKUs: the pod least needed for picking.
 
     The demand for a SKU is the number of its units that are ordered and not yet picked, in the
-    backlog and at stations. The demand for a pod is the sum of the demands for the SKUs on it; how
-    many units of them it holds does not matter. All pods are candidates, wherever they are. Ties go
-    to the pod with the lowest number.
+    backlog and at stations. The demand for a pod is the sum of the demands for the SKUs on it; the
+    numbers of units on the pod do not matter. All pods with room are candidates, wherever they are.
+    Ties go to the pod with the lowest number. By default, the chosen pod is kept for further
+    bundles until one of them does not fit or a replenishment station serves the pod
+    (`stick_to_pod`).
     """
 
     parameters_model = StickyParameters

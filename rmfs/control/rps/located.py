@@ -24,7 +24,7 @@ class Located(EvenlyBuffered[B]):
     waits_for = frozenset({Problem.ROA})
 
     def candidates(self) -> list[Bundle]:
-        """List the bundles without a pod that have a station, in order of arrival."""
+        """List the bundles that have a station but no pod yet, in order of arrival."""
         waiting = self.view.bundles.without_pod.values()
         return [bundle for bundle in waiting if bundle.station >= 0]
 
@@ -34,8 +34,8 @@ class Nearest(Located[BufferParameters]):
 
     Stored pods come before carried ones; within each of these groups, pods on the station's tier
     come first. The distance of a carried pod is that of its robot. Ties go to the pod with the
-    lowest number. The rule requires an ROA rule that does not wait for the choice of the pod
-    (`random`).
+    lowest number. The rule requires an ROA rule that does not wait for the choice of the pod, such
+    as `random`.
     """
 
     parameters_model = BufferParameters
@@ -66,8 +66,9 @@ class Reactive(Located[ReactiveParameters]):
 
     Stored pods on the station's tier come first; then pods that are either carried or on another
     tier; then pods that are both. Within the first of these groups that has a pod with room, the
-    choice is random, or the emptiest pod is chosen; ties go to the lowest number. The rule requires
-    an ROA rule that does not wait for the choice of the pod (`random`).
+    choice is random or, depending on `among_equals`, the emptiest pod is chosen; ties go to the
+    lowest number. The rule requires an ROA rule that does not wait for the choice of the pod, such
+    as `random`.
     """
 
     parameters_model = ReactiveParameters

@@ -14,7 +14,11 @@ _DRAWS = 16
 
 
 class RandomPod(Sticky[StickyParameters]):
-    """Draws one of all pods with room for the bundle, wherever they are."""
+    """Draws one of all pods with room for the bundle, wherever they are.
+
+    By default, the drawn pod is kept for further bundles until one of them does not fit or a
+    replenishment station serves the pod (`stick_to_pod`).
+    """
 
     parameters_model = StickyParameters
 

@@ -42,14 +42,15 @@ class TurnoverPodParameters(TurnoverParameters):
 
 
 class Turnover(Buffered[TurnoverPodParameters]):
-    """Chooses a pod of the turnover class of the bundle's SKU; fast SKUs thus get close to pickers.
+    """Chooses a pod of the same turnover class as the bundle's SKU.
 
-    Classes are formed by units ordered (`rmfs.control.trackers.turnover`); the fastest pods belong
-    to the class of the storage locations nearest to pick stations. If no pod of the class has room,
-    the next slower class is tried, then the next faster one, then the class after the next slower
-    one, and so on. Within a class, the same pod is chosen until it has no room or a replenishment
-    station serves it. Then the emptiest pod is chosen (ties go to the lowest number), or a random
-    pod. All pods are candidates, wherever they are.
+    Pods and SKUs are classified by units ordered (`rmfs.control.trackers.turnover`). Together with
+    PSA `turnover`, which stores the fastest pods nearest to pick stations, the rule thus brings
+    fast SKUs close to pickers. If no pod of the class has room, other classes are tried: one class
+    slower, one faster, two slower, two faster, and so on. Within a class, the same pod is chosen
+    until it has no room or a replenishment station serves it. Then the emptiest pod of the class is
+    chosen (ties go to the lowest number) or, if `emptiest` is false, a random one. All pods are
+    candidates, wherever they are.
     """
 
     parameters_model = TurnoverPodParameters
@@ -63,7 +64,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
         self._last = [-1] * self._classes.classes
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose a pod of the SKU's class, or of a class close to it; -1 if no pod has room."""
+        """Choose a pod of the SKU's class if one has room, else of another; -1 if none has room."""
         fits = self.fits(bundle)
         if not fits.any():
             return -1
@@ -79,20 +80,20 @@ class Turnover(Buffered[TurnoverPodParameters]):
         return -1
 
     def threshold(self, pod: int) -> float:
-        """Return the threshold (share of capacity) of the pod's class."""
+        """Return the value of `buffer_thresholds` (share of capacity) for the pod's class."""
         return self.parameters.buffer_thresholds[self._classes.pod_class.item(pod)]
 
     def timeout_s(self, pod: int) -> float:
-        """Return the time-out of the pod's class in s."""
+        """Return the value of `buffer_timeouts_s` for the pod's class, in s."""
         return self.parameters.buffer_timeouts_s[self._classes.pod_class.item(pod)]
 
     @property
     def shortest_timeout_s(self) -> float:
-        """The shortest time-out of all classes in s."""
+        """The smallest value of `buffer_timeouts_s`, in s."""
         return min(self.parameters.buffer_timeouts_s)
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Stop choosing the same pod again once a replenishment station serves it."""
+        """Stop reusing the pod chosen last in a class once a replenishment station serves it."""
         self._last = [-1 if pod == subject.pod else pod for pod in self._last]
 
     def _among(self, pods: np.ndarray[Any, np.dtype[np.intp]]) -> int:

@@ -44,13 +44,15 @@ class BacklogThresholdParameters(Parameters):
 class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
     """Switches stations on when much work waits, and off when the active ones have little work.
 
-    All stations are on at the start. Pick and replenishment stations are considered separately: a
-    station is switched only if the last switch of a station of its kind was at least `pause_s` ago.
-    If the backlog is above its threshold, and the share of slots (or space) in use at the active
-    stations is not below its limit, the first station that is off is switched on. If the backlog is
-    not above its threshold, and the share in use is below its limit, the last station that is on is
-    switched off, unless it is the only one. Otherwise nothing changes. Stations are ordered by
-    activation number in the layout, then by number. Bundles held back by RPS count as backlog.
+    All stations are on at the start. Pick and replenishment stations are considered separately,
+    and a station is switched only if the last switch of a station of the same kind was at least
+    `pause_s` ago. The first pick station that is off is switched on if more than `orders_on` orders
+    are in the backlog, and at least the share `pick_share_off` of the slots of active stations is
+    in use. The last pick station that is on is switched off, unless it is the only one, if at most
+    `orders_on` orders are in the backlog, and less than that share is in use. Otherwise nothing
+    changes. Replenishment stations are switched in the same way, according to `bundles_on`,
+    `replenishment_share_off` and the space in use; bundles held back by RPS count as backlog.
+    Stations are ordered by activation number in the layout, then by number.
     """
 
     parameters_model = BacklogThresholdParameters
@@ -75,7 +77,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
         self._order = {pick: activation_order(view, pick) for pick in (True, False)}
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Switch on all stations at the start; later, switch at most one station of each kind."""
+        """Switch all stations on at the start; in later calls, switch at most one of each kind."""
         if not self._started:
             self._started = True
             self._from_s = dict.fromkeys(self._from_s, self.view.now_s + self.parameters.pause_s)
@@ -91,7 +93,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
                 yield switch
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s at which the next pause ends; inf if there is none."""
+        """Return the simulated time in s at which a pause ends next; inf if there is no pause."""
         return min((at_s for at_s in self._from_s.values() if at_s > self.view.now_s), default=inf)
 
     def _switch(self, pick: bool) -> SwitchStation | None:

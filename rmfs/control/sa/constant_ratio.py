@@ -29,9 +29,10 @@ class ConstantRatioParameters(Parameters):
 class ConstantRatio(StationActivation[ConstantRatioParameters]):
     """Switches a fixed share of the stations on and the others off, permanently.
 
-    Of n stations, m = floor(`active_share` x n) are on, of which floor(`pick_share` x m) are pick
-    stations; but at least one station of each kind is on if there is one. Those with the lowest
-    activation numbers in the layout are on; ties go to the lowest number.
+    Of n stations, m = floor(`active_share` x n) are to be on: p = floor(`pick_share` x m) pick
+    stations and m - p replenishment stations. If one of these two numbers is 0, it is raised to 1;
+    if a kind has fewer stations than its number, all of them are on. Within a kind, the stations
+    with the lowest activation numbers in the layout are on; ties go to the lowest number.
     """
 
     parameters_model = ConstantRatioParameters

@@ -39,9 +39,10 @@ class StaffedParameters(Parameters):
 class Staffed(StationActivation[StaffedParameters]):
     """Follows the roster of the scenario, and lets pickers rest when they are too tired.
 
-    A pick station is on while a picker is there. When the picker's fatigue reaches `tired`, the
-    station takes no new orders until fatigue falls to `rested`; open orders are still finished.
-    Replenishment stations are always on, as are all stations if the scenario has no pickers.
+    A pick station is switched off when its picker leaves or when the picker's fatigue reaches
+    `tired`; a tired picker still finishes open orders. The station is switched on when a picker is
+    there whose fatigue is at most `rested`. If `tired` is 1, fatigue has no effect. Replenishment
+    stations are always on, as are all stations if the scenario has no pickers.
     """
 
     parameters_model = StaffedParameters
@@ -59,7 +60,7 @@ class Staffed(StationActivation[StaffedParameters]):
     def next_event_s(self) -> float:
         """Return the simulated time in s of the next change of pickers or check of fatigue.
 
-        It is inf if there is none.
+        If neither is due, the time is inf.
         """
         staff = self.view.staff
         if staff is None:

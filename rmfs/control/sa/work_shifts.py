@@ -17,7 +17,10 @@ if TYPE_CHECKING:
 
 
 class Shift(Parameters):
-    """A time from which all stations are on, or off; it recurs every loop (by default a day)."""
+    """A period, from `at_s` to the next shift, in which all stations are on, or all are off.
+
+    All shifts recur in every loop, by default a day (`WorkShiftsParameters.loop_s`).
+    """
 
     at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
     """Seconds since the start of the loop."""
@@ -49,9 +52,10 @@ class WorkShiftsParameters(Parameters):
 
 
 class WorkShifts(StationActivation[WorkShiftsParameters]):
-    """Switches all stations together, at the same times of every loop (by default a day).
+    """Switches all stations on or off together, at the same times of every day.
 
-    The clock is that of the scenario: a run begins at the time of day `time_of_day_s`.
+    Instead of the day, the shifts may repeat in a loop of another length (`loop_s`). A run begins
+    at the time of day given by the scenario (`time_of_day_s`), the first loop at time of day 0.
     """
 
     parameters_model = WorkShiftsParameters

@@ -43,7 +43,7 @@ class Consult(Protocol):
         ...
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask repositioning which pod an empty robot should move, and where; None if no pod."""
+        """Ask repositioning for a move by a robot without a pod; None if there is no move."""
         ...
 
 
@@ -54,11 +54,11 @@ WORK = frozenset(
 
 
 class TaskAllocation(Controller[P]):
-    """Gives tasks to the robots of `view.asking` and, optionally, to those of `view.resting`.
+    """Gives tasks to robots that need one (`view.asking`) or are at rest (`view.resting`).
 
-    Each decision is applied before the rule is resumed. If a robot is left without a task, the rule
-    is asked about it again at the next trigger. Robots at rest should get work as soon as there is
-    any; therefore rules subscribe to the events of `WORK` by default.
+    Each decision is applied before `decide` is resumed. If a robot is left without a task, the rule
+    is asked about it again at the next trigger. Robots at rest need not get a task, but should get
+    work as soon as there is any; therefore rules subscribe to the events of `WORK` by default.
     """
 
     problem = Problem.TA
@@ -71,14 +71,14 @@ class TaskAllocation(Controller[P]):
     ) -> Iterator[TaskDecision | Prepare | AssignOrder | AssignLines | Ask[Any] | By[Any]]:
         """Yield tasks for robots until there is nothing more to assign now.
 
-        A controller that also decides POA yields assignments of orders, too. It is asked even if no
-        robot needs a task.
+        A controller that also decides POA yields assignments of orders, too. Such a controller is
+        asked even if no robot needs a task or is at rest.
         """
 
     @abstractmethod
     def rest_place(self, robot: Robot) -> int:
         """Choose a waypoint where a robot without a pod may rest; -1 if it should stay.
 
-        The simulation calls this method when a robot at rest must make room for another robot that
-        fetches the pod above it.
+        The simulation calls this method when a robot at rest beneath a pod must make room for
+        another robot, which is to fetch the pod.
         """

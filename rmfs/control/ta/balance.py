@@ -1,4 +1,4 @@
-"""How many robots work for each station, and which ones; used by TA rules with station teams."""
+"""How many robots work for each station, and which; for TA rules that assign robots to stations."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def reassign(
     Returns
     -------
     list of int
-        The new station of each robot, or -1. A station that still has more robots than its goal
-        loses those with the highest numbers.
+        The new station of each robot, or -1. If a station still has more robots than its goal, its
+        excess robots, those with the highest numbers, get -1.
     """
     result = list(station_of)
     surplus = {station: -goal for station, goal in goals.items()}

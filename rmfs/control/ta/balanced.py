@@ -43,7 +43,7 @@ class BalancedParameters(TeamParameters):
 
 
 class Balanced(StationTeams[BalancedParameters]):
-    """Divides robots among the stations with work; by default, each works only for its station.
+    """Divides robots among stations with work; by default, a robot works only for its station.
 
     A robot continues with the pod it carries as long as the pod has work at the robot's station
     (or, with `other_stations`, at another station nearby), and then parks the pod. A robot without
@@ -52,13 +52,14 @@ class Balanced(StationTeams[BalancedParameters]):
     is no work moves an idle pod, if repositioning finds one, or rests.
 
     Every `period_s`, if the set of stations with work has changed, the robots are redistributed.
-    The share of robots given by the weight of repositioning, rounded down, gets no station. The
-    others are divided between the two kinds of station in proportion to the kind's weight times the
-    share of its stations that have work. Within a kind, stations get one robot each in turn, those
-    far from the middle of the tier first, up to `robots_per_station`; robots left over go to
-    stations of either kind below that limit. Which robot changes to which station is decided by
-    distance, the nearest pair first. If no station had work, robots are redistributed as soon as
-    there is work.
+    A share of the robots gets no station: `reposition_weight` divided by the sum of the three
+    weights; the number of these robots is rounded down. The others are divided between the two
+    kinds of station in proportion to the weight of each kind times the share of its stations that
+    have work. Within a kind, stations get one robot each in turn, those farthest from the middle of
+    the tier first, up to `robots_per_station`; robots left over go to stations of either kind below
+    that limit. Which robot changes to which station is decided by distance, the nearest pair first.
+    If no station had work at the last redistribution, the next takes place as soon as there is
+    work.
 
     A robot takes work of a station only if fewer than `robots_per_station` other robots work for
     this station.
@@ -71,7 +72,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return frozenset(station.index for station in self.view.stations if station.has_work)
 
     def goals(self, active: frozenset[int]) -> dict[int, int]:
-        """Return the number of robots that each station should have, by weight."""
+        """Return the number of robots that each of the given stations should have."""
         given = self.parameters
         order = [station for station in self._far_first if station in active]
         picks, others = by_kind(self.view, order)
@@ -87,11 +88,14 @@ class Balanced(StationTeams[BalancedParameters]):
         return goals
 
     def may_work(self, robot: Robot, station: int) -> bool:
-        """Return whether a station has fewer robots than its limit, without counting this robot."""
+        """Return whether fewer than `robots_per_station` other robots work for a station."""
         return station >= 0 and self.workers(station, robot) < self.parameters.robots_per_station
 
     def stations_for(self, robot: Robot) -> Sequence[int]:
-        """Return the robot's station or, with `search_all`, all stations, nearest first."""
+        """Return the robot's station or, with `search_all`, all stations, nearest first.
+
+        A robot that has no station gets none with `search_all` either.
+        """
         own = super().stations_for(robot)
         if not own or not self.parameters.search_all:
             return own
@@ -100,9 +104,9 @@ class Balanced(StationTeams[BalancedParameters]):
         return nearest_first
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Return a task for the carried pod at another station nearby, if allowed; else None.
+        """Return a task for the carried pod at another station nearby, which PPS chooses.
 
-        PPS chooses the station.
+        The result is None without `other_stations`, or if no such station has work for the pod.
         """
         if not self.parameters.other_stations:
             return None
@@ -123,7 +127,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return moves and consult.may_move()
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Return the task of moving an idle pod, if allowed and there is a move; else None."""
+        """Return the task of moving an idle pod; None if not allowed or if there is no move."""
         given = self.parameters
         only_moves = given.reposition_weight > 0 and self._station_of[robot.index] < 0
         if not (given.reposition_before_rest or only_moves):

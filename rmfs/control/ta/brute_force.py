@@ -1,4 +1,4 @@
-"""TA brute-force: chooses the pair of pod and station where service can begin soonest."""
+"""TA brute-force: chooses the pair of pod and station with which service can begin soonest."""
 
 from __future__ import annotations
 
@@ -53,12 +53,11 @@ class BruteForce(Solo[BruteForceParameters]):
     none, then for bundles until there are none, and so on.
 
     If the best pod is not the carried one, the robot first parks the carried pod, then fetches the
-    best one. It parks at the empty storage location on the quickest way to the best pod: the sum of
-    the time to drive to the location and the time of a straight trip from there to the best pod is
-    least. If another robot has taken the best pod meanwhile, the robot searches again. If there is
-    no work, a carried pod is parked at the nearest empty location. The rule chooses pods and
-    storage locations itself, so PPS and PSA must be `dummy`; bundles go into the pods chosen by
-    RPS.
+    best one. It parks at the empty storage location for which the time to drive there, plus the
+    time of a straight trip from there to the best pod, is least. If another robot has taken the
+    best pod meanwhile, the robot searches again. If there is no work, a carried pod is parked at
+    the nearest empty location. The rule chooses pods and storage locations itself, so PPS and PSA
+    must be `dummy`; bundles go into the pods chosen by RPS.
     """
 
     parameters_model = BruteForceParameters
@@ -72,7 +71,11 @@ class BruteForce(Solo[BruteForceParameters]):
         self._picks = True
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the best task; if the robot carries another pod, yield its parking first."""
+        """Yield the best task or, if there is no work, the task of parking or resting.
+
+        If the robot carries a pod other than the best one, yield the parking of the carried pod,
+        then `Prepare` with the best task.
+        """
         view = self.view
         job = self._best(robot, consult)
         if job is None:

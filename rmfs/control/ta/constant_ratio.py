@@ -22,9 +22,10 @@ class ConstantRatio(StationTeams[ConstantRatioParameters]):
     """Assigns a fixed share of robots to pick stations, the others to replenishment stations.
 
     Only stations that are active or have work left get robots. Within a kind, they get one robot
-    each in turn, those far from the middle of the tier first. Every `period_s`, if this set of
-    stations has changed, robots are reassigned, the nearest pair of robot and station first. Every
-    robot works only for its station, and continues with its pod as long as the pod has work there.
+    each in turn, those farthest from the middle of the tier first. Every `period_s`, if the set of
+    stations that are active or have work left has changed, robots are reassigned, the nearest pair
+    of robot and station first. Every robot works only for its station, and continues with its pod
+    as long as the pod has work there.
     """
 
     parameters_model = ConstantRatioParameters
@@ -34,7 +35,10 @@ class ConstantRatio(StationTeams[ConstantRatioParameters]):
         return self.stations_now() or super().first_stations()
 
     def stations_now(self) -> frozenset[int]:
-        """Return the stations that are active or have work left; if none, the previous ones."""
+        """Return the stations that are active or have work left.
+
+        If there are none, return those among which robots were last divided.
+        """
         found = frozenset(s.index for s in self.view.stations if s.active or s.has_work)
         return found or self._active
 

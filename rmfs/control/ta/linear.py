@@ -38,15 +38,16 @@ class Linear(Solo[LinearParameters]):
 
     The task with the greatest weighted sum of features is chosen. PPS, PSA and repositioning choose
     pods and storage locations; if they find none, the next best task is chosen. If another robot
-    without work stands beneath the pod, that robot gets the task. A robot at rest gets work for a
-    station only if the sum for this work is at least the weight of `rest`. Ties go to work for the
-    station with the lowest number, then to storing, moving, and resting.
+    without work stands beneath the pod to be fetched, that robot gets the task. A robot at rest
+    gets work for a station only if the sum for this work is at least the weight of `rest`. Ties go
+    to work for the station with the lowest number, then to storing, then to moving, then to
+    resting.
     """
 
     parameters_model = LinearParameters
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the best possible task."""
+        """Yield the task with the greatest sum among those that are possible."""
         for kind, station in self._best_first(robot):
             if kind == WORK:
                 task = self._work(robot, station, consult)
@@ -61,7 +62,10 @@ class Linear(Solo[LinearParameters]):
                 return
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find the best work for a robot at rest; None if no sum reaches the weight of `rest`."""
+        """Find the best possible work for a robot at rest; None if there is none.
+
+        The sum for this work must be at least the weight of `rest`.
+        """
         for kind, station in self._best_first(robot, self.parameters.weights["rest"]):
             task = self._work(robot, station, consult) if kind == WORK else None
             if task is not None:

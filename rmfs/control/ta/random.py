@@ -45,10 +45,10 @@ class RandomTasksParameters(SoloParameters):
 class RandomTasks(Solo[RandomTasksParameters]):
     """Gives each robot a random pod with work, and a random station where the pod has work.
 
-    A robot works either for picking or for replenishment, and changes at random. Initially, it
-    picks with a probability equal to the share of pick stations among all stations. The rule
-    chooses pods itself, so PPS must be a dummy, whose parameters control late binding. PSA chooses
-    where pods are parked.
+    A robot works either for picking or for replenishment, and changes between them at random.
+    Initially, it works for picking with a probability equal to the share of pick stations among all
+    stations. The rule chooses pods itself, so PPS must be `dummy`, whose parameters control late
+    binding. PSA chooses where pods are parked.
     """
 
     parameters_model = RandomTasksParameters
@@ -81,10 +81,10 @@ class RandomTasks(Solo[RandomTasksParameters]):
         yield self.work_for(robot, consult) or self.to_rest(robot)
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Draw an available pod with work, then a station where it has work; None if there is none.
+        """Draw an available pod with work, then a station where it has work; None without work.
 
-        The work is of the kind that the robot does at present (picking or replenishment) or, if
-        there is none and `other_kind` allows it, of the other kind.
+        The work is of the robot's present kind (picking or replenishment). If there is no such work
+        and `other_kind` is true, it is of the other kind.
         """
         for picks in self._kinds(robot):
             stations = [s.index for s in self._stations(picks) if self.view.has_open_work(s.index)]

@@ -18,10 +18,11 @@ RestRule = Literal["middle", "nearest", "random"]
 
 
 class RestPlaces:
-    """Chooses where robots rest: beneath unclaimed pods or, if there are none, at empty locations.
+    """Chooses where robots rest: beneath idle pods or, if there are none, at empty locations.
 
-    A robot beneath a stored pod is not in the way of robots that carry pods, since these cannot
-    pass there anyway. If the pod is needed, the robot beneath it gets the task or is sent away.
+    An idle pod is a stored pod that belongs to no robot's task. A robot beneath it is not in the
+    way of robots that carry pods, since these cannot pass there anyway. If the pod is needed, the
+    robot beneath it gets the task or is sent away.
 
     Parameters
     ----------
@@ -31,7 +32,7 @@ class RestPlaces:
         possibly on another tier (ties go to the waypoint with the lowest number); `random`: a
         location drawn from those on the robot's tier.
     draw
-        Function that draws an integer below its argument, for `random`.
+        Function that draws an integer from 0 to n - 1, where n is its argument; for `random`.
     """
 
     def __init__(self, view: View, rule: RestRule, draw: Callable[[int], int]) -> None:

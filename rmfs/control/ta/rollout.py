@@ -1,4 +1,4 @@
-"""TA rollout: gives a robot the base rule's task, or one that did better in simulated trials."""
+"""TA rollout: gives robots the tasks of a base rule, or others that did better in trials."""
 
 from __future__ import annotations
 
@@ -39,11 +39,13 @@ class TaskRolloutParameters(RolloutParameters):
 class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
     """Simulates alternatives to the base rule's task: other stations, pods or storage locations.
 
-    The base rule, with PPS and PSA, makes a default decision. It is compared in trials with others:
-    work for other stations, other pods for the pick station, or other storage locations for the
-    pod, as far as `over` allows. The decision that did best is made, or the default decision if the
-    advantage over it is not certain enough (`certainty`). The pacing determines how much simulated
-    time the computation takes; meanwhile, no robot gets a task.
+    The TA rule `base`, with PPS and PSA, makes a default decision, which is compared with
+    alternatives in simulated trials. If a pod is to be fetched for a station, the alternatives are
+    work for other stations and, for a pick station, other pods; if a pod is to be stored, they are
+    other storage locations. The parameter `over` selects which of these are considered. The
+    decision that did best is made, or the default decision if the advantage over it is not certain
+    enough (`certainty`). The pacing determines how much simulated time the computation takes;
+    meanwhile, no robot gets a task.
     """
 
     parameters_model = TaskRolloutParameters
@@ -58,11 +60,11 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
         self._consult: Consult
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose a waypoint for resting by the base rule."""
+        """Return the waypoint where the base rule lets a robot rest; -1 if it should stay."""
         return int(self.base.rest_place(robot))
 
     def decide(self, consult: Consult) -> Iterator[Any]:
-        """Yield the base rule's decision, or ask which task is best."""
+        """Yield decisions of the base rule or, where there are alternatives, ask which is best."""
         self._consult = consult
         while not self.in_flight:
             for first in self.base.decide(consult):
@@ -75,7 +77,7 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
                 return
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best task if it is still possible; if time has passed, decide further."""
+        """Yield the best task if it is still possible; if the answer took time, decide further."""
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide(self._consult)

@@ -1,6 +1,6 @@
-"""Base class of rules in which robots look for work by themselves.
+"""Base class of TA rules that look for work for each robot separately.
 
-These are TA `random`, `brute-force`, `swarm` and `linear`.
+The rules are `random`, `brute-force`, `swarm` and `linear`.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class SoloParameters(Parameters):
-    """Parameters of rules by which robots look for work by themselves."""
+    """Parameters of rules that look for work for each robot separately."""
 
     rest: RestRule = "nearest"
     """Where idle robots wait: at the storage location nearest to the `middle` of their tier, at the
@@ -39,8 +39,8 @@ P = TypeVar("P", bound=SoloParameters)
 class Solo(TaskAllocation[P]):
     """Finds tasks robot by robot.
 
-    If no work is found for a robot at rest, robots at rest get no further search until work is
-    added or a pod becomes available.
+    If no work is found for a robot at rest, there is no further search for any robot at rest until
+    work is added or a pod becomes available.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -82,7 +82,7 @@ class Solo(TaskAllocation[P]):
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:
-        """Return the task of resting at the waypoint chosen or, if there is none, on the spot."""
+        """Return the task of resting where `rest_place` says or, if it returns -1, on the spot."""
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
@@ -95,7 +95,7 @@ class Solo(TaskAllocation[P]):
     def pods_for(self, robot: Robot, station: int) -> NDArray[np.intp]:
         """Return the available pods with work at a station, in ascending order, shape (C,).
 
-        For pick stations, only assigned orders count, not queued ones.
+        For pick stations, only the orders assigned to the station count, not those in its pool.
         """
         target = self.view.stations[station]
         if isinstance(target, PickStation):

@@ -47,10 +47,11 @@ class StationTeams(TaskAllocation[P]):
     without work stands beneath that pod, the other robot brings it, and the two robots exchange
     their stations. A robot without work rests, and gets work as soon as there is any.
 
-    Every `period_s`, if the result of `stations_now` has changed, robots are reassigned to stations
-    below their goal (`goals`), the nearest pair of robot and station first. While no station should
-    have robots, reassignment does not wait for the end of the period: it takes place as soon as a
-    station should have some.
+    Every `period_s`, if the result of `stations_now` has changed, robots are reassigned to meet
+    `goals`: a station with too few robots gets robots that have no station or whose station has too
+    many, the nearest pair of robot and station first. After an empty result of `stations_now`,
+    reassignment does not wait for the end of the period: it takes place as soon as a station should
+    have robots.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -88,7 +89,7 @@ class StationTeams(TaskAllocation[P]):
         return station >= 0
 
     def stations_for(self, robot: Robot) -> Sequence[int]:
-        """Return the stations whose work a robot may get; the first station with work is used."""
+        """Return the stations for which a robot may work; the first one with work is chosen."""
         station = self._station_of[robot.index]
         return (station,) if station >= 0 else ()
 
@@ -97,7 +98,7 @@ class StationTeams(TaskAllocation[P]):
         return None
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find a task for a robot for which no station has work; None if it is to rest."""
+        """Find a task for a robot if none of `stations_for` has work; None if it is to rest."""
         return None
 
     def may_be_moved(self, consult: Consult) -> bool:
@@ -111,7 +112,7 @@ class StationTeams(TaskAllocation[P]):
     # --- tasks ----------------------------------------------------------------------------------
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s of the next redistribution; inf if there is none."""
+        """Return the simulated time in s at which robots may next be reassigned; inf if never."""
         return self._balance_due_s
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision]:
@@ -131,7 +132,7 @@ class StationTeams(TaskAllocation[P]):
         yield from self._wake(consult)
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose a waypoint by the parameter `rest`; -1 if there is none."""
+        """Choose a storage location for a robot to rest at, by `rest`; -1 if none is suitable."""
         return self._rest.choose(robot)
 
     def _next_task(self, robot: Robot, consult: Consult) -> TaskDecision | None:
@@ -178,7 +179,7 @@ class StationTeams(TaskAllocation[P]):
         return self.bring(chosen, pod, station)
 
     def bring(self, robot: Robot, pod: int, station: int) -> TaskDecision:
-        """Return the task of bringing a pod, and count its robot as one working for the station."""
+        """Count a robot as working for a station; return its task of bringing a pod there."""
         self.count(robot, station)
         return bring(self.view, robot, pod, station)
 

@@ -1,4 +1,4 @@
-"""Functions on stations and robots shared by several TA rules."""
+"""Functions used by several TA rules, on stations and robots."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def waypoints(view: View) -> NDArray[np.int64]:
-    """Return the waypoints of the S pick and replenishment stations, by number, shape (S,)."""
+    """Return the waypoint of each of the S pick and replenishment stations, shape (S,)."""
     return np.array([station.waypoint for station in view.stations])
 
 
@@ -43,7 +43,7 @@ def bring(view: View, robot: Robot, pod: int, station: int) -> TaskDecision:
 
 
 def station_of_task(robot: Robot) -> int:
-    """Return the pick or replenishment station for which a robot works, or -1."""
+    """Return the pick or replenishment station to which a robot's task leads; -1 if none."""
     task = robot.task
     return -1 if task is None or isinstance(task, VisitTask) else task.station
 
@@ -61,9 +61,9 @@ def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
 def near_by(
     view: View, robot: Robot, radius_m: float, among: Iterable[int], consult: Consult
 ) -> list[int]:
-    """Return those of `among` that a robot's pod can serve on the robot's tier, within a radius.
+    """Return those stations of `among` that are near a robot, and that its pod can serve.
 
-    Distances from the robot are Euclidean, in m.
+    They are on the robot's tier, at most `radius_m` from it (Euclidean distance).
     """
     stations = [view.stations[index] for index in among]
     if not stations:
@@ -80,7 +80,10 @@ def near_by(
 
 
 def far_first(view: View) -> list[int]:
-    """Return all stations, those farthest from the middle of their tier first, then by number."""
+    """Return the pick and replenishment stations by distance from the middle of their tier.
+
+    The farthest come first; ties are in order of number.
+    """
     layout, at = view.layout, waypoints(view)
     tiers = [layout.tiers[tier] for tier in layout.tier[at].tolist()]
     x = layout.x_m[at] - np.array([tier.length_m / 2 for tier in tiers])

@@ -61,13 +61,14 @@ class Swarm(Solo[SwarmParameters]):
     A station's stimulus s is max(min(n, `work_limit`) - m, 0) times the station's multiplier. Here
     n is the number of orders or bundles at the station, and m the number of robots matched with it:
     a robot is matched with the station for which it fetches or carries a pod, until it has stored
-    the pod. A station is drawn with a probability proportional to
-    s^2 / (s^2 + alpha T^2 + beta d^2), where T is half of `work_limit`, rounded down, and d the
-    Manhattan distance in m from the robot. Then the multipliers of the drawn station and of
-    stations without stimulus are set to 1, and the others grow.
+    the pod. A station is drawn with a probability proportional to its weight
+    s^2 / (s^2 + alpha T^2 + beta d^2), where alpha is `threshold_weight`, beta `distance_weight`,
+    T half of `work_limit`, rounded down, and d the Manhattan distance in m from the robot. Then the
+    multipliers of the drawn station and of stations without stimulus are set to 1, and the others
+    grow.
 
     Let S be the number of stations, and R be `rest_share` times S, rounded. If the number of
-    stations without stimulus exceeds R by e, a robot can also draw rest, with the weight
+    stations without stimulus exceeds R by e, a robot can also draw rest, which has the weight
     e^3 / (S - R)^3. If rest is drawn, no multiplier grows.
     """
 
@@ -92,7 +93,7 @@ class Swarm(Solo[SwarmParameters]):
             yield from self.park(robot, consult)
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Draw a station and ask PPS for a pod; None if rest is drawn, or there is no pod."""
+        """Draw a station and find a pod to bring to it; None if rest is drawn or no pod fits."""
         self._matched[robot.index] = -1
         station = self._draw_station(robot)
         if station < 0 or not self.view.has_open_work(station):

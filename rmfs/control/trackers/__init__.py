@@ -12,11 +12,11 @@ if TYPE_CHECKING:
 
 
 class Tracker:
-    """Base class of trackers, which count something over a run.
+    """Base class of trackers, which keep statistics for several controllers.
 
-    A tracker reads the view and changes nothing. It starts from the state of the world when a
-    controller first requests it, and exists until the end of the run, so that it is up to date for
-    a controller installed later.
+    A tracker may read the view, but changes nothing in it. It starts from the state of the world
+    when a controller first requests it, and exists until the end of the run, so that it is up to
+    date for a controller installed later.
 
     Attributes
     ----------
@@ -49,15 +49,16 @@ class Trackers:
     def get(self, kind: type[T], *settings: Hashable) -> T:
         """Return a tracker, creating it if necessary.
 
-        Controllers and trackers must request their trackers in their constructor. A tracker created
-        later would be notified of events only after the next exchange of a controller.
+        A controller that uses trackers, or a tracker that uses others, must request them in its
+        constructor. A tracker created later would be notified of events only after the next
+        exchange of a controller.
 
         Parameters
         ----------
         kind
             Class of the tracker.
         settings
-            Arguments of the constructor after the view.
+            Arguments that its constructor takes after the view.
         """
         key = (kind, settings)
         if key not in self._made:

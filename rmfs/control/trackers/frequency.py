@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Frequency(Tracker):
-    """Number of units ordered of each SKU, in orders from before the run and since time zero."""
+    """Number of units ordered of each SKU, before the run and since its start."""
 
     def __init__(self, view: View) -> None:
         super().__init__(view)
@@ -64,8 +64,8 @@ class PairFrequency(Tracker):
     def orders_with(self, sku: int) -> NDArray[np.int64]:
         """Return, for each SKU, how many orders contain both it and the given SKU, shape (K + 1,).
 
-        The last entry, with index K, is 0, so that rows of `Inventory.skus_on`, which are padded
-        with K, can be used as indices.
+        The entry of the given SKU is 0. The last entry, with index K, is 0 too, so that rows of
+        `Inventory.skus_on`, which are padded with K, can be used as indices.
         """
         counts = np.zeros(len(self.view.skus) + 1, np.int64)
         partners = self._orders.get(sku)

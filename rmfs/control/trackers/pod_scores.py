@@ -34,10 +34,12 @@ def demand(view: View, kind: Demand) -> NDArray[np.int64]:
 
 
 class DemandOnPods(Tracker):
-    """The number of units in demand on each pod: of each SKU, at most as many as are in demand.
+    """Number of units on each pod that are in demand.
 
-    Changes of stock are counted as they happen. Changes of demand are counted when the sums are
-    requested; only SKUs whose demand has changed are processed then.
+    Of a SKU, all units on the pod are counted, but not more than are in demand.
+
+    Changes of stock are counted as they happen. Changes of demand are counted when `units` is
+    called; only SKUs whose demand has changed are processed then.
     """
 
     hears = frozenset({Trigger.UNIT_PICKED, Trigger.BUNDLE_STORED})
@@ -52,7 +54,7 @@ class DemandOnPods(Tracker):
             self._units += np.minimum(contained[sku], self._demand[sku])
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Count a unit that has left its pod, or a bundle that was stored."""
+        """Update the count of a pod that a unit has left, or in which a bundle was stored."""
         if trigger is Trigger.UNIT_PICKED:
             (pod, sku), change = subject, -1
         else:
@@ -78,7 +80,7 @@ class PodScores(Tracker):
 
     *Utility* is the number of units on a pod that are in demand, where demand is all units
     ordered and not yet picked (`DemandOnPods`). *Speed* is the sum, over the units on a pod, of the
-    popularity of their SKU. Both are divided by their maximum over all pods.
+    popularity of each unit's SKU. Each of the two is divided by its maximum over all pods.
     """
 
     hears = DemandOnPods.hears
@@ -94,7 +96,7 @@ class PodScores(Tracker):
             self._speed += row * weights[sku]
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Count a unit that has left its pod, or a bundle that was stored."""
+        """Update the speed of a pod that a unit has left, or in which a bundle was stored."""
         if trigger is Trigger.UNIT_PICKED:
             pod, sku = subject
             self._speed[pod] -= self._weight[sku]

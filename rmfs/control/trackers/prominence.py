@@ -1,4 +1,4 @@
-"""Prominence of storage locations, by the travel time from there to a pick station."""
+"""Prominence of storage locations: their rank by travel time to the nearest pick station."""
 
 from __future__ import annotations
 

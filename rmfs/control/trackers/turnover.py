@@ -41,7 +41,7 @@ class TurnoverParameters(Parameters):
 
     @classmethod
     def of(cls, parameters: TurnoverParameters) -> TurnoverParameters:
-        """Return the parameters of turnover classes from those of a rule."""
+        """Extract the parameters of turnover classes from those of a rule."""
         names = TurnoverParameters.model_fields
         return TurnoverParameters(**{name: getattr(parameters, name) for name in names})
 
@@ -51,19 +51,20 @@ class TurnoverClasses(Tracker):
 
     - Storage locations are sorted by distance to the nearest pick station and divided at the class
       borders; the number of locations up to a border is rounded down.
-    - Pods are sorted by the mean number of units ordered of the SKUs they contain, the fastest
+    - Pods are sorted by the mean number of units ordered per SKU that they contain, the highest
       first. Ties are broken by distance to the nearest pick station, then by number. The pods are
-      divided in proportion to the numbers of locations of the classes.
+      divided among the classes in proportion to the number of locations in each class.
     - SKUs are sorted by units ordered, the most first; ties are broken by number. The weight of a
       SKU is the mean of two shares: its share of all units ordered, and the share of its space per
       unit in the sum of the spaces per unit of all SKUs. A class takes SKUs until the total
-      weight of the SKUs in this and faster classes reaches the share of these classes' pods in the
-      capacity of all pods.
+      weight of the SKUs in this and faster classes reaches the share that the pods of these classes
+      have in the capacity of all pods.
 
-    Units are counted since the last classification; the first classification also counts orders
-    from before the run. Pods and SKUs are classified when a rule first requests the tracker. They
-    are reclassified on the first access after `reallocation_period_s` have passed, or
-    `reallocation_orders` orders have arrived. Locations keep their class.
+    Each classification counts the units ordered since the one before; the first counts all units
+    ordered so far, including those of orders from before the run. Pods and SKUs are classified when
+    a rule first requests the tracker. They are reclassified on the first access after
+    `reallocation_period_s` have passed, or `reallocation_orders` orders have arrived, since the
+    last classification. Locations keep their class.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Zones of the storage area: a cache near each pick station, and a drop-off zone at its exit."""
+"""Zones of the storage area: a cache and a drop-off zone for each pick station."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class ZoneParameters(Parameters):
 
     @classmethod
     def of(cls, parameters: ZoneParameters) -> ZoneParameters:
-        """Return the parameters of zones from those of a rule."""
+        """Extract the parameters of zones from those of a rule."""
         names = ZoneParameters.model_fields
         return ZoneParameters(**{name: getattr(parameters, name) for name in names})
 
@@ -44,17 +44,22 @@ class ZoneParameters(Parameters):
 class Zones(Tracker):
     """The zone, if any, to which each of the L storage locations (places) belongs.
 
-    A cache has ceil(`cache_share` x L / pick stations) places, a drop-off zone `drop_off_places`.
+    Each of the S pick stations has a cache of ceil(`cache_share` x L / S) places, from which robots
+    reach the station fast, and a drop-off zone of `drop_off_places` places, which they reach fast
+    from the station.
+
     Places are assigned one after another. Of all pairs of an unassigned place and a zone that is
-    not full, the next pair is chosen by the priority of the kind of zone; then by the least travel
-    time of a loaded robot (from a place in a cache to the station, or from the station to a place
-    in a drop-off zone); then by the longest time in the other direction. Ties go to the place with
-    the lowest number, then to drop-off zones, then to the station with the lowest number.
+    not full, the next pair is chosen by the priority of the kind of zone (`zone_priority`); then by
+    the least travel time of a loaded robot (from a place in a cache to the station, or from the
+    station to a place in a drop-off zone); then by the longest time in the other direction. Ties go
+    to the place with the lowest number, then to drop-off zones, then to the station with the lowest
+    number.
 
     Attributes
     ----------
     cache_of, drop_off_of
-        Pick station to whose cache, or drop-off zone, each place belongs, or -1, shape (L,).
+        For each place, the pick station to whose cache it belongs, and the pick station to whose
+        drop-off zone it belongs; -1 if there is none; shape (L,).
     cache_size
         Number of places of each cache, shape (S,); less than specified if too few are left.
     caches
@@ -77,7 +82,7 @@ class Zones(Tracker):
         self._cache_mask: NDArray[np.bool_] = self.cache_of >= 0
 
     def occupied(self) -> NDArray[np.int64]:
-        """Return, for each cache, how many places hold a pod or are claimed by a robot, (S,)."""
+        """Return how many places of each cache hold a pod or are reserved for a robot, (S,)."""
         taken = self._cache_mask & ~self.view.storage.is_empty
         return np.bincount(self.cache_of[taken], minlength=len(self.cache_size))
 

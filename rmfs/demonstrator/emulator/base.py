@@ -19,12 +19,12 @@ WHEEL_ACCELERATION_M_S2 = 1.5
 
 @dataclass
 class EmulatedBase:
-    """An emulated base, with its true position on the floor and its serial interface.
+    """An emulated Create 2, the base of a robot: its serial interface and its true position.
 
     Attributes
     ----------
     x_m, y_m, heading_rad
-        True position in m, and heading in rad: 0 along x, positive anticlockwise.
+        True position on the floor in m, and heading in rad: 0 along x, positive anticlockwise.
     speed_factor
         Ratio of the actual to the commanded speed of the wheels.
     slip
@@ -53,7 +53,7 @@ class EmulatedBase:
     # --- serial port ---------------------------------------------------------------------------
 
     def write(self, data: bytes) -> int:
-        """Execute commands of the Open Interface."""
+        """Execute commands of the Create 2 Open Interface; return the number of bytes in `data`."""
         self._inbox += data
         while (size := self._command_size()) and len(self._inbox) >= size:
             command, self._inbox = self._inbox[:size], self._inbox[size:]
@@ -102,11 +102,11 @@ class EmulatedBase:
     # --- floor ---------------------------------------------------------------------------------
 
     def stop(self) -> None:
-        """Stop the wheels, as the guard does when the robot's program dies."""
+        """Stop the wheels, as a robot's guard process does when the robot's program dies."""
         self._wanted_left = self._wanted_right = 0.0
 
     def roll(self, seconds: float) -> None:
-        """Simulate the motion of the wheels and the base for some seconds."""
+        """Simulate the motion of the wheels and the base during the next `seconds`."""
         if self.battery <= 0:
             self.stop()
         change = WHEEL_ACCELERATION_M_S2 * seconds

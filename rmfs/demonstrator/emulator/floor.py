@@ -1,4 +1,4 @@
-"""The floor, with tape along the edges of a layout, as a camera sees it."""
+"""The floor as a camera sees it, with tape along each edge of the graph of waypoints."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ class Floor:
     Parameters
     ----------
     layout
-        The warehouse; tape lies along every edge.
+        The layout; tape lies along each edge between two waypoints.
     unkindness
-        Imperfections of the room, of which glare, noise and gaps concern the floor.
+        Imperfections of the room, of which glare, noise and gaps in the tape are used.
     rng
-        Random stream for the imperfections of the floor.
+        Random stream for the noise patterns, one of which is added to each image.
     """
 
     def __init__(self, layout: Layout, unkindness: Unkindness, rng: np.random.Generator) -> None:
@@ -52,7 +52,9 @@ class Floor:
     def view(
         self, x_m: float, y_m: float, heading_rad: float, rng: np.random.Generator
     ) -> NDArray[np.uint8]:
-        """Return a camera image, shape (height, width, 3), with the robot below its lower edge.
+        """Return an image of the floor ahead of the robot, shape (height, width, 3).
+
+        The lower edge of the image is the one nearest to the robot.
 
         Parameters
         ----------
@@ -60,7 +62,7 @@ class Floor:
             Position and heading of the robot; heading 0 points along x, positive angles
             turn anticlockwise.
         rng
-            Random stream for glare and noise.
+            Random stream for glare and for the choice of the noise pattern.
         """
         # one pixel to the right, and one down, in the picture; its rows run against y
         right = WIDE_M / IMAGE[0] / PIXEL_M

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Pace(Protocol):
-    """Determines when each tick of the room ends."""
+    """Determines when the room goes on from one tick (time step) to the next."""
 
     has_ended: bool
     """Whether the demonstration is over."""
@@ -24,10 +24,10 @@ class Pace(Protocol):
         """Wait until the first tick may begin."""
 
     def tick(self, room: Room) -> bool:
-        """Wait for the end of the present tick; return whether another tick follows."""
+        """Wait until the room may go on to the next tick; return false if there is no next tick."""
 
     def close(self) -> None:
-        """End the connection, if there is one."""
+        """End the connection to the server, if there is one."""
 
 
 class RealTime:
@@ -41,7 +41,7 @@ class RealTime:
         self._zero = time.monotonic()
 
     def tick(self, room: Room) -> bool:
-        """Sleep until the time of the tick has come on the wall clock; return true."""
+        """Sleep until the wall clock reaches the present time of the room; return true."""
         time.sleep(max(0.0, self._zero + room.now_us / 1e6 - time.monotonic()))
         return True
 

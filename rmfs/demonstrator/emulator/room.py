@@ -1,4 +1,4 @@
-"""The emulated room: floor, robots and clock, synchronised with the server."""
+"""The emulated room: its floor, its robots and its clock."""
 
 from __future__ import annotations
 
@@ -64,14 +64,14 @@ class EmulatedRobot:
         self.program = self._start(self)
 
     def kill(self) -> None:
-        """Kill the program: its state and its connection are lost, and the wheels stop."""
+        """Kill the program: its unsaved state and its connection are lost, and the wheels stop."""
         self.program = None
         if self.wire is not None:
             self.wire.close()
         self.base.stop()
 
     def step(self, now_us: int) -> None:
-        """Send the delayed messages now due and, if the program is running, do one of its steps."""
+        """Send the delayed messages that are now due; let the program, if running, do one step."""
         if self.wire is not None:
             self.wire.now_us = now_us
             self.wire.pump()
@@ -85,7 +85,7 @@ class EmulatedRobot:
 
 
 class Room:
-    """An emulated room: everything outside the server.
+    """An emulated room: a floor, and robots that connect to the server.
 
     Parameters
     ----------
@@ -102,7 +102,8 @@ class Room:
     seed
         Seed of all random draws.
     memory
-        Folder in which the robots' programs save their route orders. Default: a temporary folder.
+        Folder in which the robots' programs save the routes that the server has ordered them to
+        drive. Default: a temporary folder.
     pace
         Timing of the room. Default: synchronised with the server.
 
@@ -146,7 +147,8 @@ class Room:
         Parameters
         ----------
         until_us
-            Time, in microseconds, at which the run ends unless the server ends it earlier.
+            Time of the room, in microseconds, at which the run ends unless it has ended before.
+            Default: no limit.
         each
             Function called once per tick, for example to cause failures.
         """
@@ -167,7 +169,7 @@ class Room:
         self._pace.has_ended = True
 
     def close(self) -> None:
-        """Kill all programs, end all connections, and remove the temporary memory."""
+        """Kill all programs, end all connections, and remove the temporary folder, if any."""
         for robot in self.robots.values():
             robot.kill()
         self._pace.close()
@@ -177,14 +179,14 @@ class Room:
     # --- what goes over the wires -------------------------------------------------------------
 
     def sent(self) -> dict[str, int]:
-        """Return the number of bytes sent by each connected robot, by name of the robot."""
+        """Return how many bytes each connected robot has sent; the keys are the robots' names."""
         wires = {name: robot.wire for name, robot in self.robots.items()}
         return {name: wire.written for name, wire in wires.items() if wire and not wire.is_closed}
 
     def fetch(self, sizes: dict[str, int]) -> None:
-        """Wait until robots have received these numbers of bytes.
+        """Wait until each robot named in `sizes` has received the number of bytes given there.
 
-        Waiting for a robot also ends if nothing has arrived for 0.5 s.
+        The wait for a robot also ends if nothing arrives for 0.5 s or its connection is closed.
         """
         for name, size in sizes.items():
             wire = self.robots[name].wire if name in self.robots else None

@@ -60,7 +60,7 @@ class FloorTags:
         self._found: str | None = None
 
     def look(self) -> None:
-        """Detect a tag that has come into range; called whenever the robot has moved."""
+        """Detect a tag that has come into range, unless it is missed; call this after each move."""
         here = (self._base.x_m, self._base.y_m)
         if here == self._here:
             return

@@ -1,4 +1,4 @@
-"""Measurements of the true motion in an emulated room, which neither robots nor server know."""
+"""Measurements of the true motion in an emulated room, unknown to the robots and the server."""
 
 from __future__ import annotations
 
@@ -27,12 +27,13 @@ class Truth:
     lines_x_m, lines_y_m
         x positions of the lines along y, and y positions of the lines along x.
     nearest_m
-        Smallest distance so far between the centres of two robots, which are assumed to move in a
-        straight line between two measurements.
+        Smallest distance so far between the centres of any two robots; every robot is assumed to
+        move in a straight line from one measurement to the next.
     driven_m
         Total distance driven by all robots.
     lateral_mean_m, lateral_max_m
-        Mean and maximum distance of driving robots from the nearest line along their direction.
+        Mean and maximum distance of robots from the nearest line parallel to their motion, while
+        they drive without turning.
     """
 
     lines_x_m: list[float]
@@ -46,16 +47,16 @@ class Truth:
 
     @classmethod
     def of(cls, layout: Layout) -> Truth:
-        """Return empty measurements for lines along x and y through the waypoints of a layout."""
+        """Return a `Truth` without measurements, for lines along x and y through all waypoints."""
         return cls(np.unique(layout.x_m).tolist(), np.unique(layout.y_m).tolist())
 
     @property
     def lateral_mean_m(self) -> float:
-        """Mean distance of driving robots from the nearest line along their direction."""
+        """Mean distance from the nearest line, as defined in the class; 0 without measurements."""
         return self._lateral_sum / self._looks if self._looks else 0.0
 
     def look(self, bases: Sequence[EmulatedBase], seconds: float) -> None:
-        """Measure all robots, `seconds` after the previous call."""
+        """Measure the motion of all robots in the `seconds` since the previous call."""
         now = [(base.x_m, base.y_m, base.heading_rad) for base in bases]
         before = self._before or now
         self._before = now

@@ -18,13 +18,14 @@ class Unkindness:
     missed_tags
         Share of passages over a tag in which the reader misses the tag.
     lost_messages
-        Share of frames that are lost, in each direction.
+        Share of messages that are lost, in each direction.
     delay_us
-        Maximum delay of a frame in microseconds.
+        Maximum delay of a message in microseconds.
     glare, noise
-        Share of images with a bright spot, and standard deviation of the noise in grey values.
+        Share of camera images with a bright spot, and standard deviation of the noise that is added
+        to the grey values (0 to 255) of an image.
     gap_m
-        Length of a gap in the tape in the middle of every third edge.
+        Length, in m, of the gap in the tape at the middle of every third edge.
     """
 
     speed_error: float = 0.05

@@ -1,4 +1,4 @@
-"""A connection that loses and delays frames."""
+"""A connection that loses and delays frames, that is, encoded messages."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ _HEAD = 36  # bytes of a frame before its text
 
 
 class UnkindWire:
-    """A TCP connection that loses and delays whole frames, except the first frame of each side.
+    """A TCP connection that delays frames and loses some, but never the first of either side.
 
     Parameters
     ----------
     tcp
         The connection.
     unkindness
-        Share of frames lost, and delay of the others.
+        Imperfections of the room, of which the share of lost messages and the maximum delay of the
+        others are used.
     rng
         Random stream that draws losses and delays.
 
@@ -49,7 +50,7 @@ class UnkindWire:
         self._frames_in = self._frames_out = 0
 
     def write(self, frame: bytes) -> None:
-        """Send a frame, unless it is lost."""
+        """Queue a frame, to be sent after its delay, unless the frame is lost."""
         self._frames_out += 1
         if self._frames_out == 1 or not self._is_lost():
             self._out.append((self._arrival_us(self._out), frame))
@@ -69,14 +70,14 @@ class UnkindWire:
         self._tcp.close()
 
     def pump(self) -> None:
-        """Write to the connection the frames that are due."""
+        """Send all queued frames whose delay is over."""
         while self._out and self._out[0][0] <= self.now_us and not self.is_closed:
             frame = self._out.popleft()[1]
             self._tcp.write(frame)
             self.written += len(frame)
 
     def fetch(self, upto: int | None = None, timeout_s: float = 5.0) -> None:
-        """Read what has arrived; with `upto`, read until this total number of bytes is received.
+        """Read what has arrived; with `upto`, go on until `received` is at least `upto`.
 
         Reading also ends if nothing arrives for `timeout_s`, or the connection is closed.
         """

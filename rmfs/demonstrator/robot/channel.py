@@ -1,12 +1,12 @@
 """A session in which every message arrives exactly once and in order, despite losses.
 
-Both sides number their messages and acknowledge the last number received. A message that is not
-acknowledged in time is sent again, with all later ones. This module reads neither clock nor socket;
-the caller passes time and bytes.
+Each side numbers its messages and acknowledges the last number received from the other. A message
+that is not acknowledged in time is sent again, with all later ones. This module reads neither clock
+nor socket; the caller passes time and bytes.
 
     message := {"n": number or absent, "ack": number, "clock": microseconds, "type": name, ...}
 
-A message without a number only acknowledges others and shows that the sender is alive.
+A message without a number only acknowledges received messages and shows that the sender is alive.
 """
 
 from __future__ import annotations
@@ -31,11 +31,12 @@ class Channel:
     Parameters
     ----------
     key, own, other
-        Key of the session, and the labels of the frames that this side writes and reads.
+        Key of the session, and the labels (see `protocol`) of the frames that this side writes
+        and of those that it reads.
     now_us
         Present time in microseconds.
     rest
-        Bytes of the session that have arrived already.
+        Bytes of the session that arrived before the channel was created.
     """
 
     def __init__(
@@ -55,7 +56,7 @@ class Channel:
         self._waiting.append({"n": self._number, **message})
 
     def receive(self, data: bytes, now_us: int) -> list[Message]:
-        """Return new messages, in order.
+        """Process the bytes that have arrived, and return the new messages, in order.
 
         Raises
         ------

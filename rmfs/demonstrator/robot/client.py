@@ -1,4 +1,4 @@
-"""The robot's link to the server, which connects, authenticates, and reconnects after failures.
+"""The link by which a robot connects to the server, and reconnects after failures.
 
     link = Link(lambda: TcpWire("warehouse.local", 7888), secret, "robot-1")
     while True:
@@ -8,8 +8,8 @@
         link.send({"type": "tag", ...})
         link.flush(now_us)
 
-Nothing blocks except opening a connection. At the beginning of a session, each side proves that it
-knows the secret, and both derive a key.
+Only `Link.wait` and opening a connection block. At the beginning of a session, each side proves
+that it knows the secret, and both derive the same key from the secret and the two nonces:
 
     server -> robot   welcome: version, nonce
     robot -> server   hello: version, name of the robot, nonce (valid for this welcome only)
@@ -89,7 +89,7 @@ class TcpWire:
 
 
 class Link:
-    """A robot's session with the server.
+    """Keeps a robot in a session with the server; after a failure, a new session is opened.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ class Link:
                 self._wire.write(frame)
 
     def wait(self, timeout_s: float) -> None:
-        """Wait until data has arrived or time has run out; without a `TcpWire`, do not wait."""
+        """Wait until data has arrived or time has run out; if no `TcpWire` is open, do not wait."""
         if isinstance(self._wire, TcpWire):
             select.select([self._wire.fileno()], [], [], timeout_s)
 

@@ -40,7 +40,7 @@ class Counts(NamedTuple):
     right: int
 
     def rolled_m(self, since: Counts) -> tuple[float, float]:
-        """Return how far, in m, the left and the right wheel have rolled since another reading."""
+        """Return how far, in m, the left and the right wheel rolled since an earlier reading."""
         return _metres(self.left, since.left), _metres(self.right, since.right)
 
 
@@ -57,7 +57,7 @@ class Create2:
     port: SerialPort
 
     def start(self) -> None:
-        """Wake the base, in a mode in which it accepts commands and stops by itself at a cliff."""
+        """Put the base in safe mode: it obeys commands, but stops by itself at a cliff (a drop)."""
         self.port.write(bytes([_START, _SAFE]))
 
     def drive(self, left_m_s: float, right_m_s: float) -> None:
@@ -70,7 +70,7 @@ class Create2:
         self.drive(0.0, 0.0)
 
     def end(self) -> None:
-        """Stop and put the base to sleep."""
+        """Stop the wheels; the base then ignores commands until `start` is called."""
         self.stop()
         self.port.write(bytes([_STOP]))
 

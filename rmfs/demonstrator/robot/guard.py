@@ -1,7 +1,8 @@
 """A guard that stops the motors when the robot's program dies or hangs.
 
-The base keeps its last commanded speed even if the program on the computer fails. Therefore the
-program runs as a child process of the guard and signals after each step that it is alive.
+The base of the robot keeps its last commanded speed even if the program on the robot's computer
+fails. Therefore the program runs as a child process of the guard and signals after each step that
+it is alive.
 """
 
 from __future__ import annotations
@@ -32,12 +33,12 @@ def guarded(
     stop
         Function that stops the robot, called when the program has ended.
     patience_s
-        Time in s after which the program is killed if it makes no further step; counting begins
-        with the first step.
+        Maximum time in s between two steps; if the next step takes longer, the program is killed.
+        The time before the first step is not limited.
 
     Returns
     -------
-    The program's exit code, negative if it was ended by a signal.
+    The program's exit code; if a signal ended the program, minus the number of the signal.
     """
     reads, writes = os.pipe()
     child = os.fork()

@@ -20,19 +20,19 @@ class Camera(Protocol):
     """A camera that sees the floor in front of the robot."""
 
     def frame(self) -> NDArray[np.uint8]:
-        """Return an image, shape (height, width, 3), in blue, green, red.
+        """Return an image, shape (height, width, 3), with the channels blue, green and red.
 
-        The robot is below the lower edge.
+        The lower edge of the image is the one closest to the robot.
         """
 
 
 class VideoCamera:
-    """A camera, opened by its number in OpenCV.
+    """A camera, identified by its number in OpenCV.
 
     Raises
     ------
     OSError
-        If there is no such camera, or it returns no image.
+        If there is no such camera.
     """
 
     def __init__(self, number: int) -> None:
@@ -42,7 +42,13 @@ class VideoCamera:
             raise OSError(f"no camera {number}")
 
     def frame(self) -> NDArray[np.uint8]:
-        """Return an image (see `Camera`)."""
+        """Return an image (see `Camera`).
+
+        Raises
+        ------
+        OSError
+            If the camera returns no image.
+        """
         good, image = self._video.read()
         if not good:
             raise OSError("the camera gives no image")
@@ -51,19 +57,19 @@ class VideoCamera:
 
 @dataclass(frozen=True)
 class LineSettings:
-    """Appearance of a line.
+    """Settings by which a line is detected.
 
     Attributes
     ----------
     lowest, highest
-        Range of hue (0-179), saturation and value (0-255) of the tape.
+        Lowest and highest hue (0-179), saturation and value (each 0-255) of the tape.
     erode_px
         Side of the square used for erosion, in pixels.
     smallest_share
         Smallest area of a contour that can be a line, as a share of the image.
     widest_share
-        Largest width of the line's lower end, as a share of the image's width. A wider contour is a
-        line that crosses the robot's line.
+        Largest width of the line's lower end, as a share of the image's width. A contour with a
+        wider lower end is taken for a line that crosses the robot's line.
     lower_share
         Height of the lower part of the image into which the line must reach, as a share of the
         image's height.
@@ -83,9 +89,9 @@ def line_offset(image: NDArray[np.uint8], settings: LineSettings) -> float | Non
     Parameters
     ----------
     image
-        The image, shape (height, width, 3), in blue, green, red.
+        The image, shape (height, width, 3), with the channels blue, green and red.
     settings
-        Appearance of a line.
+        Settings by which the line is detected.
     """
     height, width = image.shape[:2]
     hsv = cv2.cvtColor(image, cv2.COLOR_BGR2HSV)
@@ -117,9 +123,9 @@ class CameraLine:
     camera
         The camera.
     half_width_m
-        Half the width, in m, of the strip of floor at the lower edge of an image.
+        Half the width, in m, of the floor that the lower edge of an image shows.
     settings
-        Appearance of a line.
+        Settings by which the line is detected.
     """
 
     camera: Camera
@@ -127,6 +133,9 @@ class CameraLine:
     settings: LineSettings = LineSettings()
 
     def offset_m(self) -> float | None:
-        """Return how far the line is to the left of the centre, in m; None without a line."""
+        """Return how far, in m, the line is to the left of the image's centre; None without a line.
+
+        The distance is negative if the line is to the right of the centre.
+        """
         offset = line_offset(self.camera.frame(), self.settings)
         return None if offset is None else offset * self.half_width_m

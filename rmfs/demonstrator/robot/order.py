@@ -1,4 +1,4 @@
-"""The drive order that a robot carries out, and its progress."""
+"""The route order that a robot carries out, and the robot's progress."""
 
 from __future__ import annotations
 
@@ -17,30 +17,34 @@ STRAIGHT = "straight"
 
 @dataclass
 class Order:
-    """A drive order: an optional turn on the spot, then a straight run over waypoints.
+    """A route order: the server's command to turn, if necessary, and then to drive straight ahead.
+
+    The turn is made on the spot; the run that follows it leads over one or more waypoints.
 
     Attributes
     ----------
     number
-        Number of the order.
+        Number of the route order.
     turn_rad
         Angle of the turn in radians, positive anticlockwise; 0 without a turn.
     start
-        Tag of the waypoint where the order begins.
+        Tag of the waypoint where the run begins.
     tags, metres
-        Tags of the waypoints of the run, and the distance in m of each from the previous one.
+        Tags of the other waypoints of the run, and the distance in m of each of these waypoints
+        from the one before it.
     granted
-        Number of waypoints of the run to which the robot may drive.
+        How many of these waypoints the robot may drive to so far; it must not drive further.
     turned
         Whether the turn is done.
     passed
         Number of waypoints reached.
     since
-        Wheel counters, read when the order arrived, the turn ended or a waypoint was reached,
+        Wheel counters, read when the route order arrived, the turn ended or a waypoint was reached,
         whichever was last.
     ahead_m
-        How far, in m, the robot was past the last waypoint reached when `since` was read; negative
-        if it was still short of the waypoint, since a tag is detected before its centre.
+        Position of the robot at the moment when `since` was read, in m beyond the last waypoint
+        reached. It is negative before the waypoint: the reader detects a tag before the robot is
+        over its centre.
     """
 
     number: int
@@ -56,12 +60,12 @@ class Order:
 
     @classmethod
     def of(cls, message: Message) -> Order:
-        """Create an order from a message of the server.
+        """Create a route order from a message of the server.
 
         Raises
         ------
         ProtocolError
-            If the message is not a valid order.
+            If the message is not a valid route order.
         """
         try:
             actions = [str(action) for action in message["actions"]]
@@ -87,7 +91,7 @@ class Order:
             raise ProtocolError(f"no order: {error!r}") from None
 
     def cut(self, upto: int) -> None:
-        """Keep only the first `upto` waypoints, and all that have been reached already."""
+        """Shorten the run to `upto` waypoints, or to those already reached if they are more."""
         upto = max(upto, self.passed)
         del self.tags[upto:], self.metres[upto:]
 
@@ -105,7 +109,17 @@ class Order:
 
 @dataclass
 class Memory:
-    """What a robot's program stores in a file: its order, and the number of the last one done."""
+    """What a robot's program stores in a file.
+
+    Attributes
+    ----------
+    path
+        The file; None if nothing is stored.
+    order
+        The route order in progress; None if there is none.
+    last_done
+        Number of the last completed route order; 0 before the first.
+    """
 
     path: Path | None = None
     order: Order | None = None
@@ -113,7 +127,7 @@ class Memory:
     _written: str = field(default="", repr=False)
 
     def save(self) -> None:
-        """Save the memory to its file, if there is one and the memory has changed."""
+        """Write the memory to the file `path`, unless that is None or nothing has changed."""
         if self.path is None:
             return
         order = None if self.order is None else vars(self.order)
@@ -127,7 +141,7 @@ class Memory:
 
     @classmethod
     def load(cls, path: Path | None) -> Memory:
-        """Load the saved memory; return an empty memory if it cannot be read."""
+        """Return the memory saved in a file; an empty memory if none can be read."""
         memory = cls(path)
         try:
             known = json.loads(path.read_text(encoding="utf-8")) if path is not None else {}

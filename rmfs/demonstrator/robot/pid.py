@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 @dataclass
 class Pid:
-    """A controller that regulates an error to zero.
+    """A PID controller, which drives an error towards zero.
 
     Attributes
     ----------
     proportional, integral, derivative
         Weights of the error, of its integral over time and of its derivative. If the error is in m
-        and the output in rad/s, their units are rad/(m s), rad/(m s^2) and rad/m.
+        and the output in rad/s, the units of the weights are rad/(m s), rad/(m s^2) and rad/m.
     limit
         Maximum absolute output; while the output would be greater, the integral is not updated.
     """
@@ -26,7 +26,7 @@ class Pid:
     _last: float | None = None
 
     def output(self, error: float, seconds: float) -> float:
-        """Return the correction for an error, `seconds` after the previous call."""
+        """Return the correction for an error; the previous call was `seconds` ago."""
         change = 0.0 if self._last is None or seconds <= 0 else (error - self._last) / seconds
         self._last = error
         total = self._sum + error * seconds

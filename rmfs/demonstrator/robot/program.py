@@ -1,6 +1,7 @@
-"""The robot's program, which turns orders into motion and reports progress to the server.
+"""The robot's program, which carries out route orders and reports progress to the server.
 
-Its method `step` is to be called repeatedly (20 times a second is enough) and never waits.
+`Program.step` is to be called repeatedly (20 times a second is enough); it never waits for a motion
+to end.
 """
 
 from __future__ import annotations
@@ -22,7 +23,10 @@ class LineSensor(Protocol):
     """A sensor that sees the line on the floor ahead."""
 
     def offset_m(self) -> float | None:
-        """Return how far left of the robot's centre the line is, in m; None if no line is seen."""
+        """Return how far left of the robot's centre the line is, in m; None if no line is seen.
+
+        The distance is negative if the line is to the right of the centre.
+        """
 
 
 @dataclass(frozen=True)
@@ -32,7 +36,7 @@ class Settings:
     Attributes
     ----------
     speed_m_s, acceleration_m_s2
-        Speed and acceleration of straight runs.
+        Top speed and acceleration of straight runs.
     turn_rad_s
         Angular speed of turns on the spot.
     creep_m_s
@@ -83,7 +87,7 @@ class Program:
     settings
         Settings of the robot's motion.
     memory
-        File that keeps the order in case the program is killed. Default: nothing is kept.
+        File that keeps the route order in case the program is killed. Default: nothing is kept.
     """
 
     def __init__(
@@ -108,7 +112,7 @@ class Program:
         base.start()
 
     def step(self, now_us: int) -> None:
-        """Read all sensors and the server's messages, and set the wheels."""
+        """Read the sensors and the server's messages, set the wheels' speeds, and send messages."""
         seconds = 0.0 if self._last_us is None else (now_us - self._last_us) / 1e6
         self._last_us = now_us
         counts = self.base.counts()

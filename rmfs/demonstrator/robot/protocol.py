@@ -2,10 +2,11 @@
 
     frame := length (4 bytes, big-endian) code (32 bytes, HMAC-SHA256) text (length bytes, UTF-8)
 
-The code covers the text and a label, so that no frame is valid in another context. Labels
-distinguish the frames of the handshake and, afterwards, the two directions. The label of the
-robot's first frame contains the server's nonce. Both sides know a secret; the key of a session is
-derived from it and from a nonce of each side.
+The code covers the text (the JSON object) and a label, which is not sent. The first frame of the
+server (welcome), the first frame of the robot (hello), and the later frames of each direction have
+different labels, so that none is accepted in place of another. The label of the hello contains the
+server's nonce, a random text used only once, so that no recorded hello is accepted. The first two
+codes use a secret that both sides know, the others a key derived from it and a nonce of each side.
 """
 
 from __future__ import annotations
@@ -32,12 +33,12 @@ class ProtocolError(Exception):
 
 
 def code(key: bytes, label: bytes, text: bytes) -> bytes:
-    """Return the authentication code of a text."""
+    """Return the authentication code of a label and a text."""
     return hmac.digest(key, len(label).to_bytes(2, "big") + label + text, hashlib.sha256)
 
 
 def session_key(secret: bytes, server_nonce: str, robot_nonce: str) -> bytes:
-    """Return the key of a session, derived from the secret and both nonces."""
+    """Return the key of a session, derived from the secret and the nonces of both sides."""
     return code(secret, b"session", f"{server_nonce}/{robot_nonce}".encode())
 
 
@@ -50,18 +51,18 @@ def pack(message: Message, key: bytes, label: bytes) -> bytes:
 
 
 class Unpacker:
-    """Divides received bytes into frames; incomplete frames are kept in `rest`."""
+    """Divides received bytes into frames; the bytes of an incomplete frame are kept in `rest`."""
 
     def __init__(self, rest: bytes = b"") -> None:
         self.rest = bytearray(rest)
 
     def feed(self, data: bytes, key: bytes, label: bytes) -> Iterator[Message]:
-        """Add received bytes, and yield the complete messages.
+        """Add received bytes, and yield the messages that are now complete.
 
         Raises
         ------
         ProtocolError
-            If a frame is too long, has a wrong code, or is not JSON.
+            If a frame is too long, has a wrong code, or contains no JSON object.
         """
         self.rest += data
         while len(self.rest) >= _LENGTH:
@@ -84,10 +85,7 @@ class Unpacker:
 
 
 def text_of(message: Message, name: str, longest: int = 64) -> str:
-    """Return a text field of a message; raise ProtocolError if there is no valid text.
-
-    A text is invalid if it is empty or too long.
-    """
+    """Return the text in a field; raise ProtocolError if it is missing, empty or too long."""
     value = message.get(name)
     if not isinstance(value, str) or not 0 < len(value) <= longest:
         raise ProtocolError(f"{name} must have 1 to {longest} characters (given: {value!r})")
@@ -95,7 +93,7 @@ def text_of(message: Message, name: str, longest: int = 64) -> str:
 
 
 def whole(message: Message, name: str) -> int:
-    """Return an integer field of a message; raise ProtocolError if it is not an integer >= 0."""
+    """Return the integer in a field of a message; raise ProtocolError if it is no integer >= 0."""
     value = message.get(name)
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise ProtocolError(f"{name} must be a whole number, 0 or more (given: {value!r})")

@@ -13,7 +13,7 @@ class TagReader(Protocol):
 
 
 class SerialTagReader:
-    """A reader that writes each tag as a line of hexadecimal digits to a serial port.
+    """A tag reader that sends each tag over a serial port, as a line of hexadecimal digits.
 
     Parameters
     ----------
@@ -27,7 +27,10 @@ class SerialTagReader:
         self._last: str | None = None
 
     def read(self) -> str | None:
-        """Return the last tag read since the previous call; None if there is no new tag."""
+        """Return the last tag received since the previous call; None if there is none.
+
+        A tag that is received several times in a row is returned only once.
+        """
         found = None
         for byte in self._port.read(256):
             if byte not in b"\r\n":

@@ -1,11 +1,12 @@
 """The clock of a demonstration: the wall clock, or that of an emulated room.
 
-One clock governs plans, heartbeats and timeouts. An emulated room keeps the clock and synchronises
-with the server: it sends the time, and the number of bytes that each robot has sent. When the
-server has processed all this, it answers with the number of bytes that it has sent to each robot.
+One clock governs plans, heartbeats and timeouts. An emulated room is a program that emulates robots
+on a floor. It keeps the clock and synchronises with the server: it sends the time, and the number
+of bytes that each robot has sent so far. When the server has received these bytes and has done
+everything due at this time, it answers with the number of bytes that it has sent to each robot.
 
-    room -> server   tick: time_us, sent (bytes by robot)
-    server -> room   tock: time_us, sent (bytes by robot)
+    room -> server   tick: time_us, sent (number of bytes for each robot)
+    server -> room   tock: time_us, sent (number of bytes for each robot)
 """
 
 from __future__ import annotations
@@ -32,27 +33,27 @@ class Clock(Protocol):
     """The clock of a demonstration."""
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Wait until a time is reached, and return the robots' messages up to then."""
+        """Wait until a time is reached, and return the messages received from robots up to then."""
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Record that everything due at this time has been done."""
+        """Take note that everything due at this time has been done."""
 
 
 class WallClock:
-    """The wall clock. When it is created, the time of the demonstration is `begin_us`."""
+    """The wall clock; the demonstration's time is `begin_us` when the clock is created."""
 
     def __init__(self, begin_us: int = 0) -> None:
         self._zero = time.monotonic() - begin_us / 1e6
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Read messages until a time is reached, and return them."""
+        """Receive messages until a time is reached, and return them."""
         messages: list[tuple[str, Message]] = []
         while (left_s := time_us / 1e6 - (time.monotonic() - self._zero)) > 0:
             messages += hub.poll(time_us, left_s)
         return messages + hub.poll(time_us, 0.0)
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Do nothing."""
+        """Do nothing; the wall clock runs by itself."""
 
 
 class RoomClock:
@@ -63,12 +64,14 @@ class RoomClock:
         self._expected: dict[str, int] = {}
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Wait until the room has reached a time and all that its robots have sent has arrived.
+        """Wait until the room has reached a time, and return the messages of its robots.
+
+        All bytes that the robots have sent up to this time are awaited.
 
         Raises
         ------
         RoomGoneError
-            If the room has sent no tick for `PATIENCE_S`.
+            If the room has sent no `tick` message for `PATIENCE_S`.
         """
         messages: list[tuple[str, Message]] = []
         begun = time.monotonic()
@@ -84,7 +87,7 @@ class RoomClock:
         return messages
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Tell the room to continue."""
+        """Tell the room to continue, since everything due at this time has been done."""
         if self._room_us == time_us:
             self._answer(hub, time_us)
 

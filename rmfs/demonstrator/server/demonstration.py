@@ -1,4 +1,4 @@
-"""A demonstration: a run in which some robots are real."""
+"""A demonstration: a run in which some or all robots are real or emulated, not simulated."""
 
 from __future__ import annotations
 
@@ -25,23 +25,25 @@ if TYPE_CHECKING:
 
 @dataclass
 class Demonstration:
-    """The real robots of a demonstration, and how the server reaches them.
+    """The real or emulated robots of a demonstration, and how the server reaches them.
 
     Attributes
     ----------
     hub
-        The sessions of the robots.
+        The server's sessions with these robots.
     robots
-        Names of the robots, and their indices in the layout.
+        Names of these robots, and their indices in the layout.
     tags
         The tag of every waypoint.
     journal
         File of received messages. If it exists, the run first processes the messages in it again
-        and then continues.
+        and then continues with new ones.
     is_emulated
-        Whether the robots are in an emulated room, which keeps the clock.
+        Whether the robots are in an emulated room, a program that emulates floor and robots and
+        keeps the clock of the demonstration.
     past_failure
-        Whether to omit the messages of the tick at which the server failed.
+        Whether to omit the messages received in the tick (step of 50 ms) in which the server
+        failed.
     """
 
     hub: Hub
@@ -53,7 +55,7 @@ class Demonstration:
     traffic: GuidedTraffic | None = None
 
     def run(self, *inputs: Any, seed: int = 0, **options: Any) -> Run:
-        """Run a simulation in which some of the robots are real.
+        """Run a simulation in which these robots are real or emulated.
 
         Parameters
         ----------
@@ -93,7 +95,7 @@ class Demonstration:
 
 
 def expected(robots: dict[str, int], *, is_emulated: bool) -> list[str]:
-    """Return the names of all clients that may connect: the robots, and the room if emulated."""
+    """Return the names of all clients that may connect: robots and, if emulated, their room."""
     return [*robots, ROOM] if is_emulated else [*robots]
 
 

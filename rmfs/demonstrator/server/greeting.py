@@ -20,7 +20,14 @@ from rmfs.demonstrator.robot.protocol import (
 class Guest(NamedTuple):
     """A client that has identified itself.
 
-    It has a name, the key of its session, and the bytes received after its first message.
+    Attributes
+    ----------
+    name
+        Name of the client.
+    key
+        Key of its session.
+    rest
+        Bytes received after its first frame.
     """
 
     name: str
@@ -31,12 +38,12 @@ class Guest(NamedTuple):
 class Greeting:
     """The handshake of a connection: the server's welcome, and the client's hello in reply to it.
 
-    A hello is valid for one welcome only.
+    Both are frames. A hello is valid only as the reply to one particular welcome.
 
     Parameters
     ----------
     secret
-        Secret shared with the robots.
+        Secret shared with the clients.
     """
 
     def __init__(self, secret: bytes) -> None:
@@ -50,12 +57,13 @@ class Greeting:
         return pack(message, self._secret, WELCOME)
 
     def receive(self, data: bytes) -> Guest | None:
-        """Add received bytes; return the client if it has identified itself by then, else None.
+        """Add received bytes; return the client if its hello is now complete, else None.
 
         Raises
         ------
         ProtocolError
-            If the client does not know the secret, or uses another version.
+            If the client does not know the secret, uses another version of the protocol, or sends
+            an invalid hello.
         """
         for hello in self._unpacker.feed(data, self._secret, HELLO + self._nonce.encode()):
             if hello.get("type") != "hello" or hello.get("version") != VERSION:

@@ -1,10 +1,11 @@
 """Guides real robots along the plans of the traffic layer, and adapts the plans to them.
 
-Each tick begins with the messages of the robots. A robot is late if, before the next tick, its plan
-requires something that the robot has not confirmed. Its plan is then postponed, together with the
-plans of robots that use the same waypoints later. Then the robots whose next motion is due get
-their orders, as far as the path is clear. Therefore, the plan never runs ahead of reality, and a
-robot never enters a waypoint before the robots planned ahead of it have left the waypoint.
+Every 50 ms, in a tick, the server first processes the messages of the robots. A robot is late if it
+has not yet confirmed something that its plan requires of it before the next tick. The rest of its
+plan is then postponed, together with the plans of robots that use the same waypoints later. Then
+the robots whose next motion is due get route orders (commands to turn and to drive over waypoints);
+each robot is told how far its path is clear. Therefore, the plan never runs ahead of reality, and a
+robot never enters a waypoint before all robots that were to use this waypoint earlier have left it.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ TICK_US = 50_000
 GIVE_UP_US = 30_000_000
 """Time, in microseconds, that a robot may be silent before the others are planned around it."""
 MOST_TROUBLES = 2
-"""Number of failed attempts at an order after which other robots are planned around the robot."""
+"""Number of failed attempts at a route order after which others are planned around the robot."""
 GONE_US = 3_600_000_000
 """Time, in microseconds, by which a robot's plan is postponed if others are planned around it."""
 SETTLE_US = 4_000_000
@@ -53,7 +54,7 @@ class Guide:
     traffic
         The traffic layer, which holds the plans of all robots.
     robots
-        Indices of the real robots; the others are simulated.
+        Indices of the real or emulated robots; the other robots are simulated.
     tags
         The tag of every waypoint.
     """
@@ -83,16 +84,16 @@ class Guide:
         Parameters
         ----------
         messages
-            Messages of the robots, in order.
+            Indices of the senders and their messages, in order of arrival.
         silent
-            Robots that are silent although they have a session.
+            Indices of robots that have a session but have sent nothing for 3 s.
         regroups
-            Whether new plans may be made in this tick; if not, replanning that is due waits for
-            a later tick. Default: True.
+            Whether new plans for all robots may be made in this tick, if they are due; if not,
+            they are made in a later tick. Default: True.
 
         Returns
         -------
-        The orders to send.
+        The messages to send, each with the index of the robot that is to receive it.
         """
         for index, message in messages:
             try:
@@ -110,7 +111,10 @@ class Guide:
         return outbox
 
     def forget_strayed(self) -> None:
-        """Forget which robots are off their paths; they report it again on getting an order."""
+        """Forget which robots have strayed from their paths.
+
+        Each of them reports this again if it reads a tag off its path during a route order.
+        """
         for robot in self.robots.values():
             robot.astray = None
 

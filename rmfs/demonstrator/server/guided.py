@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 
 class GuidedTraffic(Traffic):
-    """The traffic layer of a warehouse with some real robots; simulated time follows a clock.
+    """The traffic layer of a demonstration; simulated time follows the demonstration's clock.
 
     Parameters
     ----------
     layout
         The warehouse.
     robots
-        Names and indices of the real robots.
+        Names of the real or emulated robots, and their indices in the layout.
     tags
         The tag of every waypoint.
     hub
-        Sessions of the real robots.
+        The sessions with these robots.
     clock
         Clock of the demonstration.
     journal
@@ -60,7 +60,7 @@ class GuidedTraffic(Traffic):
         self.advance = self._advance_guided
 
     def fork(self, memo: dict[int, Any] | None = None) -> NoReturn:
-        """Refuse to copy the traffic, since real robots cannot be copied.
+        """Refuse to copy the traffic layer, since real robots cannot be copied.
 
         Raises
         ------
@@ -123,10 +123,10 @@ class GuidedTraffic(Traffic):
             ) from error
 
     def end(self) -> None:
-        """End the demonstration: close all sessions, after notifying an emulated room.
+        """End the demonstration: notify the emulated room, if there is one, and close all sessions.
 
-        After a failure of the server, the room is not notified: like the robots, it waits until the
-        server has been restarted.
+        After a failure of the server, the room is not notified; like the robots, it then waits
+        until the server has been restarted.
         """
         if not self._failed:
             self._hub.send(ROOM, {"type": "end"})

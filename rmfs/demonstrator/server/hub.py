@@ -1,7 +1,7 @@
-"""Sessions with robots over TCP.
+"""Sessions over TCP with clients: robots and, in an emulation, their room (see `clock`).
 
-A client is refused, and this is logged, if it does not know the secret, has another version, or
-sends invalid or too much data. Other sessions are not affected.
+If a client does not know the secret, uses another version of the protocol, or sends a frame that is
+invalid or too long, its connection is closed, and this is logged. Other sessions are not affected.
 """
 
 from __future__ import annotations
@@ -58,23 +58,23 @@ class _Connection:
 
 
 class Hub:
-    """Accepts robots and exchanges messages with them.
+    """Accepts connections of clients and exchanges messages with them.
 
     Parameters
     ----------
     host, port
         Address and port on which to listen; port 0 selects a free one.
     secret
-        Secret shared with the robots.
+        Secret shared with the clients.
     names
-        Names of the robots that may connect.
+        Names of the clients that may connect.
 
     Attributes
     ----------
     refused
-        Number of connections that ended before their session began.
+        Number of connections that were closed before a session began.
     dropped
-        Names of robots whose session has ended and that have not reconnected.
+        Names of the clients whose last session has ended and that have not reconnected since.
     """
 
     def __init__(self, host: str, port: int, secret: bytes, names: Collection[str]) -> None:
@@ -91,17 +91,17 @@ class Hub:
 
     @property
     def address(self) -> tuple[str, int]:
-        """Host and port on which robots are expected."""
+        """Host and port on which the hub listens."""
         host, port = self._listener.getsockname()[:2]
         return str(host), int(port)
 
     @property
     def present(self) -> frozenset[str]:
-        """Names of the robots with a session, and of an emulated room that has one."""
+        """Names of the clients that have a session."""
         return frozenset(self._sessions)
 
     def silent(self, now_us: int) -> frozenset[str]:
-        """Names of robots with a session that have been silent for too long."""
+        """Return the names of the clients that have a session but have sent nothing for 3 s."""
         return frozenset(
             name
             for name, session in self._sessions.items()
@@ -114,7 +114,9 @@ class Hub:
         return (session.received, session.sent) if session else (0, 0)
 
     def poll(self, now_us: int, timeout_s: float) -> list[tuple[str, Message]]:
-        """Read for at most `timeout_s`; return the new messages in order of arrival.
+        """Wait for data for at most `timeout_s`; return the new messages in order of arrival.
+
+        Each message is returned with the name of its sender.
 
         The beginning of a session is reported as `{"type": "connected"}`, its end as
         `{"type": "gone"}`.
@@ -129,16 +131,17 @@ class Hub:
         return inbox
 
     def send(self, name: str, message: Message) -> None:
-        """Send a message, or drop it if there is no session.
+        """Queue a message for a client, or drop it if the client has no session.
 
-        The server sends a robot's unfinished order again when the next session has begun.
+        A dropped message to a robot does no harm: when the robot begins its next session, the
+        server sends the robot's unfinished route order again, in its present state.
         """
         session = self._sessions.get(name)
         if session is not None and session.channel is not None:
             session.channel.send(message)
 
     def flush(self, now_us: int) -> None:
-        """Write the frames that are due to be sent."""
+        """Send the frames that are due."""
         for session in list(self._sessions.values()):
             assert session.channel is not None
             try:
@@ -148,7 +151,7 @@ class Hub:
                 self._drop(session, str(error))
 
     def close(self) -> None:
-        """End all sessions."""
+        """End all sessions, and stop listening."""
         for connection in list(self._connections.values()):
             connection.socket.close()
         self._selector.close()

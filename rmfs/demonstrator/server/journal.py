@@ -1,9 +1,10 @@
 """A journal of received messages, tick by tick, so that a killed server can resume.
 
-A server that is restarted with its journal repeats the demonstration as fast as it can. It reaches
-the same state, because it receives the same messages and all its random draws are seeded. After a
-failure of the server itself, it would therefore fail again at the same tick. Such a tick is marked,
-and its messages can be omitted; none of the orders of the tick has been sent.
+A tick is a step of 50 ms. A server that is restarted with its journal repeats the demonstration as
+fast as it can. It reaches the same state, because it processes the same messages and all its random
+draws are seeded. If an error of the server has ended the demonstration, the error therefore occurs
+again in the same tick. This tick has failed: it is marked in the journal, and its messages can be
+omitted in the repetition. In a failed tick, nothing has been sent to the robots.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Heard = tuple[list[tuple[int, "Message"]], frozenset[int]]
 
 
 class Journal:
-    """A file with a line for every tick with messages, silent robots, new orders or a failure.
+    """A file that records each tick with messages received or sent, silent robots or a failure.
 
     Parameters
     ----------
@@ -33,7 +34,7 @@ class Journal:
     settings
         Settings of the demonstration; a journal with other settings is refused.
     past_failure
-        Whether to omit the messages of the tick at which the server failed. Default: False.
+        Whether to omit the messages of the tick that failed last. Default: False.
 
     Raises
     ------
@@ -60,7 +61,7 @@ class Journal:
             self._write({"time_us": left_out, "left_out": True})
 
     def heard_at(self, time_us: int) -> Heard:
-        """Return the messages and silent robots of a past tick; nothing if the tick is omitted."""
+        """Return the messages and silent robots of a past tick; none if they are to be omitted."""
         if time_us in self.left_out:
             return [], frozenset()
         return self._by_time.get(time_us, ([], frozenset()))
@@ -68,11 +69,11 @@ class Journal:
     def note(
         self, time_us: int, messages: list[tuple[int, Message]], silent: frozenset[int]
     ) -> None:
-        """Record received messages and silent robots before they are processed."""
+        """Record the received messages and silent robots of a tick, before it is processed."""
         self._write({"time_us": time_us, "heard": messages, "silent": sorted(silent)})
 
     def note_failure(self, time_us: int, error: str) -> None:
-        """Mark the tick at this time as failed; none of its orders has been sent."""
+        """Mark the tick at this time as failed; nothing has been sent to the robots in it."""
         self._write({"time_us": time_us, "failed": error})
 
     def _write(self, entry: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""The order by which a robot follows a part of its plan, and its confirmed progress."""
+"""The route order by which a robot follows a part of its plan, and the robot's progress."""
 
 from __future__ import annotations
 
@@ -20,29 +20,31 @@ _TURNS = {0: [], 1: ["left"], 2: ["around"], 3: ["right"]}
 
 @dataclass
 class Pursuit:
-    """An order that the server has sent to a robot, and the robot's progress.
+    """A route order that the server has sent to a robot, and the robot's progress.
+
+    A route order is the command to turn, if necessary, and then to drive straight over waypoints.
 
     Attributes
     ----------
     number
-        Number of the order.
+        Number of the route order.
     move
-        The part of the plan that the order carries out, with the times planned when the order was
-        created. If the robot is late, only the times in the plan change.
+        The part of the plan that the route order carries out, with the times planned when the route
+        order was created. If the robot is late, the times in the plan change, but not these.
     heading_before_rad
         Heading of the robot, in rad, before the turn.
     waypoints
-        Waypoints of the straight run, without its start.
+        Waypoints of the straight run, without the one where it starts.
     along_m
-        Distance of each waypoint from the start, in m.
+        Distance of each of these waypoints from the start, in m.
     passed
-        Number of waypoints that the robot has confirmed.
+        Number of these waypoints that the robot has confirmed.
     turned, done
-        Whether the robot has turned, and whether it stands at the end of the run.
+        Whether the robot has turned or need not turn; whether it stands at the end of the run.
     granted
-        Number of waypoints to which the robot may drive; it is 0 until the robot has turned.
+        How many of these waypoints the robot may drive to so far; 0 until the robot has turned.
     troubles
-        Number of times the robot has reported trouble since its last confirmed waypoint.
+        Number of times the robot has reported trouble since it last confirmed a waypoint.
     """
 
     number: int
@@ -61,15 +63,15 @@ class Pursuit:
     def of(
         cls, number: int, move: PlannedMove, heading_rad: float, layout: Layout, robot: int
     ) -> Pursuit:
-        """Create the pursuit of a move that has not begun."""
+        """Create the route order for a move that has not begun."""
         waypoints, along, seconds = _course(layout, move, robot)
         turned = quarter_turns(heading_rad, move.heading_rad) == 0
         return cls(number, move, heading_rad, waypoints, along, seconds, turned=turned)
 
     def next_us(self, move: PlannedMove) -> int:
-        """Return the planned time, in us, at the next waypoint that the robot has to confirm.
+        """Return when, in us, the robot is to be at the next waypoint that it has to confirm.
 
-        If it has confirmed all waypoints, return the end of the move.
+        If it has confirmed all waypoints, return the planned end of the move.
 
         Parameters
         ----------
@@ -82,7 +84,7 @@ class Pursuit:
         return move.start_us + late_us + math.floor(self.seconds[self.passed] * 1e6)
 
     def pass_waypoint(self, waypoint: int) -> bool:
-        """Record a waypoint at which the robot was seen; return false if it is not on the run."""
+        """Record that the robot was at a waypoint; return false if this is not on the run."""
         if waypoint not in self.waypoints:
             return False
         self.turned = True
@@ -90,22 +92,22 @@ class Pursuit:
         return True
 
     def cut(self) -> None:
-        """End the order at the last granted waypoint."""
+        """End the route order at the last granted waypoint."""
         upto = max(self.granted, self.passed)
         del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
 
     def follow(self, move: PlannedMove, layout: Layout, robot: int) -> None:
-        """Replace the move by one that ends earlier on the same run and has its own times."""
+        """Replace `move` by a move with other times that ends earlier on the same run."""
         self.move = move
         self.waypoints, self.along_m, self.seconds = _course(layout, move, robot)
 
     @property
     def end(self) -> int:
-        """The waypoint at which the order ends."""
+        """The waypoint at which the route order ends."""
         return self.waypoints[-1] if self.waypoints else self.move.from_waypoint
 
     def order(self, tags: list[str]) -> Message:
-        """Return the order as a message to the robot; a completed turn is left out.
+        """Return the route order as a message to the robot; a completed turn is left out.
 
         Parameters
         ----------
@@ -148,7 +150,7 @@ def quarter_turns(before_rad: float, after_rad: float) -> int:
 
 
 def straight_way(layout: Layout, move: PlannedMove) -> list[int]:
-    """Return the waypoints of a straight run, without its start."""
+    """Return the waypoints of a move, which is a straight run, without the one where it starts."""
     along = np.array([math.cos(move.heading_rad), math.sin(move.heading_rad)])
     here, way = move.from_waypoint, []
     while here != move.to_waypoint:

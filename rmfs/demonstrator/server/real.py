@@ -1,4 +1,4 @@
-"""What the server knows about robots outside the simulation."""
+"""What the server knows about real (physical or emulated) robots, and the check of their floor."""
 
 from __future__ import annotations
 
@@ -17,22 +17,25 @@ if TYPE_CHECKING:
 
 @dataclass
 class RealRobot:
-    """What the server knows about a robot outside the simulation.
+    """What the server knows about a real (physical or emulated) robot.
+
+    An order, here, is the server's message that the robot is to turn and drive (`Pursuit`).
 
     Attributes
     ----------
     index
         Index of the robot in the layout.
     heading_rad
-        Heading in rad after the last completed order.
+        Last known or estimated heading, in rad; not updated while an order is in progress.
     pursuit
-        Latest order, in progress or completed; None before the first order.
+        Latest order, in progress or completed. None before the first order; also None after the
+        robot has left its path and received a new plan, until the next order.
     is_present
         Whether there is a session with the robot.
     heard_us
         Time of the last message, in microseconds.
     given_up
-        Whether the robot has been given up, so that others are planned around it.
+        Whether others are planned around the robot because it is silent or in trouble.
     astray
         Waypoint where the robot is after it has left its path; None if it is on its path.
     """
@@ -53,9 +56,9 @@ class RealRobot:
     def heading_at(self, layout: Layout, waypoint: int) -> float:
         """Return the robot's probable heading, in rad, at a waypoint to which it was not sent.
 
-        If a line along x or y joins the last confirmed waypoint to this one, the robot has probably
-        taken a wrong turn: its heading is the direction of this line. Otherwise, it has probably
-        been pushed: its heading is the one according to its order.
+        If a line along x or y leads from the last confirmed waypoint to this one, the robot has
+        probably taken a wrong turn: its heading is the direction of this line. Otherwise, it has
+        probably been pushed aside and has kept the heading that its order gave it.
         """
         pursuit = self.pursuit
         if pursuit is None:
@@ -70,7 +73,11 @@ class RealRobot:
 
 
 def check_floor(layout: Layout, tags: Sequence[str]) -> None:
-    """Raise InputError if robots that follow lines and read tags cannot use a layout."""
+    """Raise InputError if real robots cannot use a layout.
+
+    There must be no elevators, all edges must be parallel to x or y, and every waypoint must have a
+    tag of its own.
+    """
     if layout.elevators:
         raise InputError(f"{layout.name}: elevators cannot be driven by real robots")
     if len(tags) != layout.waypoints or len(set(tags)) != len(tags):

@@ -22,13 +22,14 @@ CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 
 
 def check(layout: Layout) -> list[Violation]:
-    """Return all violations of a layout, those with severity "impossible" first.
+    """Return all faults of a layout, those with severity "impossible" first.
 
-    The following is checked: there are robots, pick stations and replenishment stations; every
-    storage location, station and elevator can be reached and left, with and without load; the
-    aisles are strongly connected; the places of each queue form a chain; every robot has a place to
-    rest; robots and pods cannot overlap; and the conditions W1-W3 of deadlock freedom hold
-    (docs/safety.md).
+    It is checked that there are robots, pick stations and replenishment stations; that all elements
+    are in permitted places; that robots, with and without a pod, can reach and leave every storage
+    location, station and elevator; that robots and pods cannot overlap; and that the conditions
+    W1-W3 of deadlock freedom (docs/safety.md) hold as far as they concern the layout. Among other
+    things, these require that the aisles are strongly connected, that every robot has a place to
+    rest, and that the places of each queue form a chain.
     """
     found = [violation for checks in CHECKS for violation in checks(layout)]
     return sorted(found, key=lambda violation: violation.severity != IMPOSSIBLE)
@@ -42,7 +43,7 @@ def refuse(layout: Layout, source: str, *, allow_not_well_formed: bool = False) 
     source
         File or name of the layout, for the message.
     allow_not_well_formed
-        Whether to accept a layout that violates only the conditions of deadlock freedom.
+        Whether to accept a layout of which all faults have the severity "not well-formed".
 
     Raises
     ------

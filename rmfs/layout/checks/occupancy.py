@@ -1,4 +1,8 @@
-"""Checks where pods, robots and stations stand at the start, and that there is room for all."""
+"""Checks the positions of elements, and that there are enough storage locations.
+
+The positions of pods and robots are those at the start of a run. Neither pods nor robots may
+outnumber the storage locations.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def occupancy(layout: Layout) -> Iterator[Violation]:
-    """Yield violations: wrong positions of pods, robots, stations, waypoints or elevators."""
+    """Yield violations: elements in wrong positions, and too many pods or robots."""
     yield from _pods(layout)
     yield from _robots(layout)
     yield from _stations(layout)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def population(layout: Layout) -> Iterator[Violation]:
-    """Yield a violation if there are no robots, likewise for pick and replenishment stations."""
+    """Yield a violation for each kind that is missing: robots, pick or replenishment stations."""
     counts = {
         "robots": layout.robots,
         "pick stations": len(layout.pick_stations),

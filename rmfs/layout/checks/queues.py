@@ -1,10 +1,11 @@
-"""Checks that queue lists are queues: chains of unshared places that lead to the head (W3).
+"""Checks that each queue is a chain of places of its own that leads to its head (W3).
 
-W3 of the deadlock argument requires that a station admits no more robots than its queue has places.
-Traffic grants places one by one and lets all other robots wait where they are, so the number of
-robots does not matter, with one exception: if a queue consists of the station alone, two robots
-that go on to each other's station would wait for each other forever. Robots never go directly
-from one charger or swap station to another.
+Condition W3 of deadlock freedom (docs/safety.md) requires that no more robots are sent to a station
+than its queue has places. The traffic layer assigns places one by one, and all other robots wait
+where they are. A short queue therefore suffices for any number of robots, with one exception: if
+queues consist of their stations alone, two robots that go on to each other's station would wait for
+each other forever. Chargers and swap stations are exempt, since robots never go directly from one
+of them to another.
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ class Queue:
     of_elevator
         Whether an elevator is at its head.
     is_left
-        Whether the station is a charger or swap station; a robot never goes directly from one of
-        these to another.
+        Whether the station is a charger or swap station; a robot never goes directly from one such
+        station to another.
     """
 
     label: str
@@ -54,12 +55,15 @@ class Queue:
 
     @property
     def entrance(self) -> int:
-        """The last place."""
+        """The last of the places, where robots enter the queue."""
         return self.places[-1]
 
 
 def all_queues(layout: Layout) -> list[Queue]:
-    """Return the queues of stations and elevators; a queue with an empty list is its head alone."""
+    """Return the queues of stations and elevators.
+
+    A queue for which the layout lists no places consists of its head alone.
+    """
     queues = [
         Queue(
             station_label(layout, s),

@@ -1,4 +1,4 @@
-"""Reachability in a graph restricted to some waypoints."""
+"""Which waypoints can be reached from which if only some waypoints may be used."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ class Reach:
         self.allowed = allowed
 
     def forward(self, sources: Mask) -> Mask:
-        """Return the allowed waypoints reached from any of the sources, sources included."""
+        """Return the waypoints reachable from an allowed source, including these sources."""
         return _search(self._graph, sources & self.allowed)
 
     def backward(self, goals: Mask) -> Mask:
-        """Return the allowed waypoints from which one of the goals is reached, goals included."""
+        """Return the waypoints from which an allowed goal is reachable, including these goals."""
         return _search(self._back, goals & self.allowed)
 
     def components(self) -> NDArray[np.int32]:
@@ -63,7 +63,7 @@ class Reach:
 
 
 def entered_from(layout: Layout, tails: NDArray[np.int32], sources: Mask) -> Mask:
-    """Return the waypoints that an edge from one of the sources leads to."""
+    """Return the waypoints to which an edge leads from one of the sources."""
     found = np.zeros(layout.waypoints, dtype=np.bool_)
     found[layout.edge_target[sources[tails]]] = True
     return found

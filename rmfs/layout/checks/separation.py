@@ -1,9 +1,10 @@
-"""Checks that bodies stay apart if robots reserve the waypoints of the edges they use.
+"""Checks that robots and pods do not touch if robots reserve the waypoints of the edges they use.
 
-A robot on an edge reserves both its ends. Reservations therefore keep two robots apart if the
-distance between edges without a common end, and between an edge and any other waypoint, is at least
-the sum of the radii (docs/safety.md). Pods are discs, and their radius counts everywhere, since
-they are carried everywhere.
+A robot on an edge reserves both ends of the edge. Reservations therefore keep two robots apart if
+a minimum distance separates any two waypoints, any two edges without a common end, and any edge and
+any waypoint that is not one of its ends (docs/safety.md). This distance is twice the largest radius
+of a robot or pod. Pods are treated as discs, and their radius counts everywhere, since they are
+carried everywhere.
 """
 
 from __future__ import annotations

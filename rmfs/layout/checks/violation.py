@@ -1,4 +1,4 @@
-"""Violations: which element violates which condition, and how severe it is."""
+"""Violations: which element of a layout violates which condition, and how severely."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ class Violation:
     ----------
     severity
         "impossible": some task can never be done, or robots or pods would overlap; the layout is
-        always refused. "not well-formed": one of the conditions W1-W3 of deadlock freedom does not
-        hold; the layout is refused unless the user allows it.
+        always refused. "not well-formed": one of the conditions W1-W3 of deadlock freedom
+        (docs/safety.md) does not hold, or a waypoint lies outside its tier; the layout is refused
+        unless the user allows such layouts.
     element
-        The element concerned, by kind, number and place.
+        The element concerned: its kind, number and position.
     message
         What is wrong with it.
     """

@@ -1,9 +1,10 @@
-"""Condition W1: paths between endpoints do not pass through other endpoints.
+"""Condition W1 of deadlock freedom: endpoints are connected by paths that avoid other endpoints.
 
-Endpoints are storage locations and queue places: only there may a robot stand for an unlimited
-time. Suppose that the aisles (all other waypoints) are strongly connected, every storage location
-is joined to them in both directions, every queue is entered from them, and every head leads back to
-them. Then a robot that waits until all others stand at endpoints can always proceed.
+Endpoints are the storage locations and the places in queues of stations: only there may a robot
+stand for an unlimited time. Suppose that the aisles (all other waypoints) are strongly connected,
+every storage location is joined to them in both directions, every queue can be entered from them,
+and the head of every queue leads back to them. Then a robot that waits until all others stand at
+endpoints can always proceed.
 """
 
 from __future__ import annotations

@@ -29,14 +29,15 @@ def assembled(drawing: Drawing, given: Equipment, name: str) -> Layout:
     Parameters
     ----------
     given
-        Robots, pods and stations of the layout.
+        Parameters in addition to the drawing, such as the number of robots.
     name
         Name of the layout, if `given` has none.
 
     Raises
     ------
     InputError
-        If a required element is missing, or there is no room for the robots.
+        If a required element is missing, or the number of robots given is smaller than the number
+        drawn or larger than the aisles have room for.
     """
     _refuse_incomplete(drawing)
     number = np.full(drawing.ground.shape, -1, dtype=np.int32)

@@ -49,9 +49,9 @@ class Drawing:
         For each one-way aisle cell, the only step (one of `NEIGHBOURS`) to another aisle cell.
     full, empty
         Storage locations drawn with a pod, and those drawn without a pod. Of the storage locations
-        in neither list, the share `pod_share` holds a pod.
+        in neither list, the share `Equipment.pod_share` holds a pod.
     robots
-        Cells at which robots stand.
+        Cells drawn with a robot.
     stands
         The stations.
     """

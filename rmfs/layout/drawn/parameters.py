@@ -1,4 +1,4 @@
-"""Parameters of a drawn layout in addition to the picture; all have defaults."""
+"""Parameters of layouts drawn as text and of grid maps, in addition to the picture or map."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Equipment(Strict):
 
 
 class PictureHead(Equipment):
-    """The head of a layout drawn as text (`.txt`)."""
+    """The head of a layout drawn as text (`.txt`): the parameters above the picture."""
 
     format: Literal["rmfs-layout-drawn/1"] = Field(
         "rmfs-layout-drawn/1", description="version of this format"
@@ -74,8 +74,8 @@ class MapStations(Equipment):
     format: Literal["rmfs-map-stations/1"] = Field(description="version of this format")
     storage: str = Field(
         "",
-        description="signs of the map that stand for storage locations; those without an aisle "
-        "beside them are left out",
+        description="signs of the map that stand for storage locations; a cell with such a sign "
+        "but no adjacent aisle becomes an obstacle",
     )
     pick_stations: list[StationPlaces] = Field(
         default_factory=list,

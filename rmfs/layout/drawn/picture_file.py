@@ -72,8 +72,8 @@ def read_picture(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()) ->
     Raises
     ------
     InputError
-        If the file cannot be read, or the head or a sign is wrong; the message names line and
-        column.
+        If the file cannot be read, or the head or the picture is wrong; for a wrong sign, the
+        message names line and column.
     """
     head, first, lines = _split(path)
     given = validate(PictureHead, apply_overrides(head, list(overrides)), str(path))

@@ -27,7 +27,7 @@ class ForkError(ValueError):
 
 
 def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tuple[Cell, ...]:
-    """Follow a queue from the station to its entrance.
+    """Return the cells of a drawn queue, from the station to the entrance.
 
     The next place is the neighbour with the next number, or else the only neighbour with the sign
     `q`.
@@ -37,7 +37,7 @@ def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tu
     sign
         Function that returns the sign drawn at a cell.
     taken
-        Cells of other queues; those of this queue are added.
+        Cells of all stations, and of the queues already read; those of this queue are added.
 
     Raises
     ------
@@ -62,8 +62,8 @@ def straight_queue(drawing: Drawing, head: Cell, length: int) -> tuple[Cell, ...
     """Lay a straight queue over aisle cells, and mark them as places of a queue.
 
     The direction with room for the most places is chosen; ties go to the first of east, north, west
-    and south. One-way cells, cells beside storage locations, cells with robots and the last way out
-    of the station are not used.
+    and south. One-way cells, cells beside storage locations and cells with robots are not used. If
+    the station has only one adjacent aisle cell, no queue is laid, since this cell is the way out.
 
     Parameters
     ----------

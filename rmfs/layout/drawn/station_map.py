@@ -40,7 +40,8 @@ def read_station_map(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()
     Raises
     ------
     InputError
-        If one of the two files cannot be read or is wrong; the message names every wrong cell.
+        If one of the two files cannot be read or is wrong; the message names the wrong cells, at
+        most 10.
     """
     beside = stations_file(path)
     given = validate(MapStations, apply_overrides(read_toml(beside), list(overrides)), str(beside))

@@ -1,4 +1,4 @@
-"""Reads explicit layouts."""
+"""Reads explicit layouts, that is, JSON files that list every waypoint and edge."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def read_json(path: Path) -> Layout:
     Raises
     ------
     InputError
-        If the file is missing, not JSON, or not a valid layout; the message lists all errors.
+        If the file is missing, not JSON, or not a valid layout; the message lists the errors.
     """
     return build(_parse(path), str(path), path.parent)
 
@@ -50,13 +50,13 @@ def build(table: Table, source: str, folder: Path | None = None) -> Layout:
     source
         Name of the file, for messages.
     folder
-        Folder where Python files that define kinds of station are looked for first. Default: the
-        working directory.
+        Folder that is searched, before the working directory, for Python files that define kinds of
+        station. Default: only the working directory.
 
     Raises
     ------
     InputError
-        If a value is wrong or an index refers to nothing.
+        If a value is wrong, or an index refers to an element that does not exist.
     """
     explicit = validate(ExplicitLayout, table, source)
     stop_if_any(list(_dangling(explicit)), source)

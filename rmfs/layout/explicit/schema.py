@@ -15,7 +15,7 @@ FORMAT = "rmfs-layout-explicit/1"
 
 
 class ExplicitTier(Strict):
-    """A floor: extent in x and y and height above the ground, in m."""
+    """A floor: its extents in x and y, and its height above the ground, in m."""
 
     length_m: Positive = Field(description="extent in x, in m")
     width_m: Positive = Field(description="extent in y, in m")
@@ -40,7 +40,7 @@ class ExplicitWaypoint(Strict):
 
 
 class ExplicitPickStation(Strict):
-    """A pick station; `queue` lists its waypoints from the station to the entrance."""
+    """A pick station; `queue` lists the waypoints of its queue, from station to entrance."""
 
     queue: list[Index] = Field(
         min_length=1, description="waypoints from the station to the entrance of its queue"
@@ -50,7 +50,8 @@ class ExplicitPickStation(Strict):
     unit_transfer_s: Seconds = Field(description="time in s for which a unit occupies the station")
     unit_pick_s: Seconds = Field(description="time in s for which a unit occupies the robot")
     activation: Count = Field(
-        description="position in the order in which stations are activated, from 1"
+        description="rank of the station, from 1, in the sequence in which stations of its kind "
+        "are switched on"
     )
 
 
@@ -61,17 +62,24 @@ class ExplicitReplenishmentStation(Strict):
         min_length=1, description="waypoints from the station to the entrance of its queue"
     )
     radius_m: Positive = Field(description="radius of the station, m")
-    capacity: Space = Field(description="maximum space units of assigned bundles")
+    capacity: Space = Field(
+        description="maximum total size, in space units, of the bundles assigned to "
+        "the "
+        "station "
+        "at "
+        "any time"
+    )
     bundle_transfer_s: Seconds = Field(
         description="time in s for which a bundle occupies robot and station"
     )
     activation: Count = Field(
-        description="position in the order in which stations are activated, from 1"
+        description="rank of the station, from 1, in the sequence in which stations of its kind "
+        "are switched on"
     )
 
 
 class ExplicitOtherStation(Strict):
-    """A station neither for picking nor replenishment; `queue` as for pick stations."""
+    """A station neither for picking nor for replenishment; `queue` as for pick stations."""
 
     queue: list[Index] = Field(
         min_length=1, description="waypoints from the station to the entrance of its queue"
@@ -80,10 +88,11 @@ class ExplicitOtherStation(Strict):
 
 
 class ExplicitOtherStations(Strict):
-    """All stations of a further kind: its class and parameters, and where they stand."""
+    """A kind of station other than pick and replenishment: class, parameters and stations."""
 
     kind: str = Field(
-        description="class: module:Class, path/to/file.py:Class, or a registered name"
+        description="class of the stations, as `module:Class`, `path/to/file.py:Class` or a "
+        "registered name such as `charger`"
     )
     parameters: dict[str, Any] = Field(default_factory=dict, description="parameters of the class")
     stations: list[ExplicitOtherStation] = Field(description="the stations")
@@ -98,11 +107,12 @@ class ExplicitRide(Strict):
 
 
 class ExplicitElevator(Strict):
-    """An elevator; one queue per tier, each beginning with its boarding waypoint."""
+    """An elevator; on each tier that it serves, a queue that begins with the boarding waypoint."""
 
     queues: list[Annotated[list[Index], Field(min_length=1)]] = Field(
         min_length=2,
-        description="for each tier, waypoints from the boarding waypoint to the queue's entrance",
+        description="for each tier that it serves, waypoints from the boarding waypoint to the "
+        "entrance of its queue",
     )
     rides: list[ExplicitRide] = Field(description="durations of the rides")
 
@@ -142,7 +152,9 @@ class ExplicitLayout(Strict):
     format: Literal["rmfs-layout-explicit/1"] = Field(description="version of this format")
     name: str = Field(min_length=1, description="name shown in results")
     tiers: list[ExplicitTier] = Field(min_length=1, description="floors")
-    pod_radius_m: Positive = Field(description="pod radius in m; the largest, if they differ")
+    pod_radius_m: Positive = Field(
+        description="radius of a pod in m; if pods differ, the largest radius"
+    )
     robot_kinds: list[ExplicitRobotKind] = Field(min_length=1, description="kinds of robots")
     pick_stations: list[ExplicitPickStation] = Field(
         default_factory=list, description="stations where units are picked"

@@ -18,15 +18,16 @@ if TYPE_CHECKING:
 def generate(parameters: LayoutParameters, folder: Path | None = None) -> Layout:
     """Generate the layout that the parameters describe.
 
-    Storage blocks, each two storage locations deep, are separated by horizontal and vertical aisles
-    and surrounded by a ring road. Each side with stations or elevators adds a hall and a buffer
-    zone with their queues. Equal parameters give equal layouts.
+    Storage blocks, each two storage locations deep, are separated by horizontal and vertical
+    aisles. A ring road surrounds all blocks. On each side with stations or elevators, there is a
+    hall outside the ring road, and beyond it a buffer zone that contains their queues. Equal
+    parameters give equal layouts.
 
     Parameters
     ----------
     folder
-        Folder where files with kinds of station are looked for first. Default: the working
-        directory.
+        Folder that is searched, before the working directory, for Python files that define kinds of
+        station. Default: only the working directory.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """Assembles the layout of the whole warehouse from the tiles of a tier.
 
-All tiers are identical; waypoints are numbered tier by tier, row by row.
+All tiers have the same tiles; waypoints are numbered tier by tier, row by row.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ class Assembly:
     parameters
         Validated parameters of the layout.
     folder
-        Folder where files with kinds of station are looked for first.
+        Folder that is searched, before the working directory, for Python files that define kinds of
+        station. Default: only the working directory.
     """
 
     def __init__(self, parameters: LayoutParameters, folder: Path | None = None) -> None:

@@ -1,8 +1,8 @@
 """The buffer of a station or elevator: parallel segments that form a serpentine.
 
 RAWSim-O default layout: `entry_exit_distance + 1` segments of `buffer_width` tiles, perpendicular
-to the edge of the hall. The first segment begins at the entrance, the last one ends at the exit,
-and the station is at the outer end of the last one.
+to the edge of the hall. The first segment begins at the entrance, and the last one ends at the
+exit. The station is at that end of the last segment which is farthest from the hall.
 """
 
 from __future__ import annotations
@@ -28,11 +28,12 @@ class Buffer:
     Attributes
     ----------
     queue
-        Tiles from the station back to the entrance.
+        Tiles from the station back to the entrance of the first segment.
     tiles
-        All tiles of the zone: the queue, and the tiles between station and exit.
+        All tiles of the zone: the queue, and the way out from the station to the exit.
     entrances
-        Edges that lead into the zone from tiles of the hall: one for every second segment.
+        Edges that lead from the hall into the zone: one into the first segment, one into the third,
+        and so on.
     steps
         All directed edges that begin inside the zone.
     """

@@ -1,6 +1,6 @@
-"""Compass directions on the tile grid and the four sides of a tier.
+"""Compass directions on the tile grid, and the four sides of a tier.
 
-Rows count from north to south and columns from west to east: y grows towards the south.
+Rows are numbered from north to south and columns from west to east: y grows towards the south.
 """
 
 from __future__ import annotations

@@ -23,14 +23,15 @@ RING_WIDTH = 1
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """Sizes in tiles.
+    """Size of a tier, in tiles.
 
     Attributes
     ----------
     height, width
         Rows and columns of the storage rectangle, ring road included.
     margin
-        Tiles that each side adds outside the storage rectangle (0, or hall plus buffer).
+        Distance from the storage rectangle to the edge of the tier on each side: the width of hall
+        and buffer zone together, or 0 without them.
     """
 
     height: int
@@ -64,13 +65,13 @@ def lanes(parameters: LayoutParameters) -> int:
 
 
 def aisles_at(parameters: LayoutParameters, side: Direction) -> int:
-    """Return the number of aisles that end at a side."""
+    """Return the number of aisles that end at a side of the storage rectangle."""
     across = side in (Direction.EAST, Direction.WEST)
     return parameters.horizontal_aisles if across else parameters.vertical_aisles
 
 
 def block_at(parameters: LayoutParameters, side: Direction) -> int:
-    """Return the length of a storage block along a side, in tiles."""
+    """Return the extent of a storage block parallel to a side of the tier, in tiles."""
     across = side in (Direction.EAST, Direction.WEST)
     return BLOCK_DEPTH if across else parameters.block_length
 
@@ -107,7 +108,10 @@ def blocks(parameters: LayoutParameters) -> int:
 
 
 def road_tiles(parameters: LayoutParameters) -> int:
-    """Return the number of tiles in aisles, ring road, halls and pockets of a tier."""
+    """Return the number of tiles of a tier in aisles, ring road, halls and pockets.
+
+    Pockets hold the stations within the storage area.
+    """
     size = extent(parameters)
     rectangle = size.height * size.width - storage_places(parameters)
     open_sides = {side for side in SIDES if size.margin[side]}

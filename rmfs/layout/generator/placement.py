@@ -16,18 +16,20 @@ PODS, ROBOTS = 0, 1
 
 
 def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> NDArray[np.int32]:
-    """Draw a share of the storage locations of a tier, uniformly, without repetition.
+    """Draw the initial storage locations of a tier's pods.
 
-    The number of locations drawn is rounded down.
+    They are drawn from `places`, uniformly, without repetition. Their number is `share` times the
+    number of places, rounded down.
     """
     count = math.floor(share * len(places) + 1e-9)
     return _draw(places, count, seed, PODS, tier)
 
 
 def draw_robots(tiles: NDArray[np.int32], count: int, seed: int, tier: int) -> NDArray[np.int32]:
-    """Draw road waypoints of a tier, uniformly, without repetition.
+    """Draw the initial waypoints of a tier's robots.
 
-    With the same seed, a greater `count` only adds waypoints to those drawn for a smaller one.
+    From the road waypoints `tiles`, `count` are drawn, uniformly, without repetition. With the same
+    seed, a greater `count` only adds waypoints to those drawn for a smaller one.
     """
     return _draw(tiles, count, seed, ROBOTS, tier)
 

@@ -1,8 +1,8 @@
 """Stations within the storage area: pockets beside an aisle, each in place of a storage location.
 
-The pockets are spread evenly over the blocks, and those of each kind of station evenly over the
-pockets. Robots enter a pocket from the aisle beside it and leave it to the same aisle. A pocket
-leads nowhere else, so that no robot drives through it.
+The pockets are spread evenly over the blocks, and the stations of each kind evenly over the
+pockets. Robots enter a pocket from the aisle (or ring road) beside it and return to the same tile.
+A pocket leads nowhere else, so that no robot drives through it.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Pocket:
     kind
         Kind of station.
     tile, aisle
-        Where it stands, and the tile of the aisle or ring road beside it.
+        Tile of the station, and the neighbouring tile in the aisle or ring road.
     """
 
     kind: str
@@ -44,7 +44,7 @@ class Pocket:
 
 
 def pockets(parameters: LayoutParameters, kinds: NDArray[np.int8]) -> list[Pocket]:
-    """Return the stations within the storage area of a tier; none if there are too few blocks.
+    """Return the stations within the storage area of a tier; none if they outnumber the blocks.
 
     Parameters
     ----------

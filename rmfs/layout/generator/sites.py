@@ -1,8 +1,9 @@
 """Where stations and elevators stand along the sides of a tier.
 
-RAWSim-O default layout: robots can leave the buffer of a station only opposite an aisle that runs
-inward. Of these possible exits on a side, those in the middle are taken, in this order, by pick
-stations, replenishment stations, stations of other kinds, and elevators.
+RAWSim-O default layout: robots can leave the buffer of a station only opposite an aisle that can be
+entered from that side. On each side of a tier, stations and elevators take the possible exits in
+the middle, one each. From north to south, or from west to east, pick stations come first, then
+replenishment stations, stations of other kinds, and elevators.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ class Site:
     Attributes
     ----------
     kind
-        Kind of station, by name, or `elevator`.
+        Name of the kind of station, or `elevator`.
     exit, entrance
         Positions along the side at which robots leave and enter its buffer, in tiles from the
         northern or western end of the ring road on that side.

@@ -34,7 +34,10 @@ ROAD = (Kind.ROW_AISLE, Kind.COLUMN_AISLE, Kind.CROSSING, Kind.RING, Kind.HALL)
 
 
 def tile_kinds(parameters: LayoutParameters) -> NDArray[np.int8]:
-    """Return the kind of each tile of a tier, shape (rows, columns); buffers are `NOTHING` here."""
+    """Return the kind of each tile of a tier, shape (rows, columns), without buffers and pockets.
+
+    Tiles where buffers will lie are `NOTHING`; tiles where pockets will lie are `STORAGE`.
+    """
     size = extent(parameters)
     kinds = np.full((size.rows, size.columns), Kind.NOTHING, dtype=np.int8)
     rectangle = kinds[size.top : size.top + size.height, size.left : size.left + size.width]

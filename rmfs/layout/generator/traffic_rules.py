@@ -1,10 +1,11 @@
 """Where a robot may go from each tile.
 
-As in RAWSim-O's default layout, one-way traffic follows the same rule in aisles, ring road and
-halls. Rows and columns are counted from the north-west corner of the ring road. Even rows run east
-and odd rows west; even columns run north and odd columns south. All four directions are reversed
-for a clockwise ring. Only the rows or columns along a hall are counted from its outer edge; the
-outermost one runs in the direction of the ring road.
+One-way traffic follows the rule of RAWSim-O's default layout. Rows and columns of tiles are counted
+from 0 at the north-west corner of the ring road. In aisles, on the ring road and across halls, even
+rows run east and odd rows west; even columns run north and odd columns south. Lanes along a hall
+alternate in direction; the outermost one runs in the direction of the ring road beside the hall.
+These are the directions for a ring that runs counter-clockwise in pictures, where y points upwards
+and south is therefore at the top. For a clockwise ring, all of them are reversed.
 """
 
 from __future__ import annotations

@@ -22,9 +22,10 @@ HAIR = 1e-6
 
 
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
-    """Check that each bundle is assigned after its arrival, and then stored as assigned.
+    """Check that the events of a bundle (arrival, assignment, storage) agree and are in this order.
 
-    Also checks that no replenishment station has more bundles than fit into it.
+    Also checks that the bundles assigned to a replenishment station and not yet stored never exceed
+    its capacity.
     """
     steps = rows.of_kind(*STEPS)
     order = np.lexsort((steps.number, steps.order))

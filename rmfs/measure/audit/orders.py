@@ -1,4 +1,4 @@
-"""Audit of orders: whether each receives exactly the units ordered."""
+"""Audit of orders: whether each completed order has received exactly the units ordered."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class _Orders:
 
 
 def check(rows: Rows) -> Chapter:
-    """Check that no order gets too many units, or any before its arrival or after its end.
+    """Check that no order gets too many units, and none before its arrival or after its end.
 
     Also checks that a completed order has got all its units.
     """

@@ -14,7 +14,7 @@ SHOWN = 5
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """One part of an audit, with its faults.
+    """One part of an audit, with the faults found.
 
     Attributes
     ----------
@@ -48,11 +48,11 @@ class Audit:
 
     @property
     def ok(self) -> bool:
-        """Whether there are no faults."""
+        """Whether no faults were found."""
         return self.motion.ok and not any(chapter.faults for chapter in self.chapters)
 
     def summary(self) -> str:
-        """Return the result as text: one line per chapter, and the first faults of each."""
+        """Return the result as text: motion and each chapter, with the first faults of each."""
         lines = [f"motion: {self.motion.summary(SHOWN)}"]
         for chapter in self.chapters:
             if not chapter.faults:

@@ -1,4 +1,4 @@
-"""Events as arrays, to be examined one kind at a time."""
+"""The events of a run as arrays, from which those of some kinds can be selected."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Rows:
-    """Events in chronological order; each array has shape (E,).
+    """Events of a run: one array per column, each of shape (E,).
 
     Attributes
     ----------
     number
-        Row numbers of the events in the file.
+        Row number of each event in `events.parquet`.
     kind
         Kind of each event (`Happening`).
     """
@@ -40,7 +40,7 @@ class Rows:
 
     @classmethod
     def of(cls, events: pd.DataFrame) -> Rows:
-        """Create the rows from the events of a run."""
+        """Create the rows from all events of a run, in chronological order."""
         numbers = {name: number for number, name in enumerate(KINDS)}
         kind = np.asarray(events["kind"].map(numbers), np.int64)
         names = ("time_us", "robot", "pod", "station", "order", "sku", "units")
@@ -60,7 +60,7 @@ class Rows:
         return self.taken(np.isin(self.kind, kinds))
 
     def tell(self, row: int, what: str) -> str:
-        """Return a line about a faulty event: its time, row, kind and fault (`what`)."""
+        """Return a line of text on the faulty event at index `row`; `what` describes the fault."""
         kind = KINDS[int(self.kind[row])]
         return f"{self.time_us[row] / 1e6:.6f} s, row {self.number[row]} ({kind}): {what}"
 
@@ -75,13 +75,20 @@ class Rows:
 def running(
     groups: tuple[Integers, ...], change: NDArray[np.float64]
 ) -> tuple[Integers, NDArray[np.float64]]:
-    """Return the cumulative sums of the changes in each group.
+    """Return the cumulative sums of changes, separately for each group of changes.
+
+    Parameters
+    ----------
+    groups
+        Arrays of keys; changes that are equal in all keys form a group.
+    change
+        The changes, in chronological order.
 
     Returns
     -------
     tuple
-        A permutation that sorts the changes by group, and the sum of the group after each change,
-        sorted in the same way.
+        A permutation that sorts the changes by group and, in this sorted order, the sum of each
+        change and all earlier ones of its group.
     """
     order = np.lexsort(groups[::-1])
     total = np.cumsum(change[order])

@@ -23,8 +23,8 @@ WHERE = "this robot and pod are not visiting this station at this time"
 def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chapter:
     """Check that units and bundles are handled only during visits of their pods to the stations.
 
-    Also checks that visits to a station do not overlap, and that during a visit its robot and pod
-    stand at the station.
+    Also checks that visits to the same station do not overlap, and that robot and pod stand
+    at the station throughout each visit.
 
     Parameters
     ----------

@@ -2,14 +2,16 @@
 
 It reads a layout and a trace and shares neither code nor concepts with the planner: it knows
 positions over time, not reservations. From the trace it reconstructs the position of every robot at
-every moment, as pieces of constant acceleration, and proves on these (without sampling) that
+every moment, as pieces of motion with constant acceleration. Without sampling, it proves that
 
-* each trace is gapless and continuous, within the robot's kinematics, along edges and elevators
-  that exist (`continuity`);
-* no two robot discs overlap on a tier; a robot that carries a larger pod is as large as the pod
-  (`sweep` finds nearby pairs, `distance` bounds their distance from below, `separation`);
-* pods are conserved, never share a place, and no carried pod touches a stored one (`pods`);
-* a queue place and an elevator each hold at most one robot (`occupancy`).
+* the motion of each robot has no gaps or jumps, respects the robot's kinematic limits, and
+  follows existing edges and elevators (`continuity`);
+* no two robots on a tier overlap, where robots are discs, and a robot that carries a larger pod is
+  as large as the pod (`separation`, which uses `sweep` to find pairs that come close, and
+  `distance` to prove that these do not come too close);
+* each pod is always on one robot or at one place, no two pods share a place, and no carried pod
+  overlaps a stored one (`pods`);
+* no queue place and no elevator is used by two robots at the same time (`occupancy`).
 """
 
 from __future__ import annotations
@@ -46,12 +48,14 @@ def check(
     trace
         The trace's columns by name: arrays of equal length or a pandas frame.
     until_us
-        End of the trace in microseconds; up to then, the trace must cover every robot. A motion in
-        progress then may be recorded in full or be cut off. Default: the start of the last motion.
+        End of the trace in microseconds; up to then, the trace must cover every robot. A motion
+        that is in progress at the end may be recorded in full or cut off there. Default: the start
+        of the last motion.
     slow
-        Periods in which robots are limited to a share of their top speed; outside these periods,
-        they are not. Default: periods are not checked, and each straight run is limited to the
-        top speed stated for it in the trace, which must not exceed that of the robot.
+        All periods in which a robot is limited to a share of its top speed; at all other times,
+        its limit is its full top speed. Default: the periods are unknown, and the limit of each
+        straight run is the top speed that the trace states for it (if any), which must not exceed
+        that of the robot.
 
     Raises
     ------

@@ -34,7 +34,8 @@ def check(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) -> li
     Parameters
     ----------
     until_us
-        End of the trace; a motion in progress then may be recorded in full or be cut off.
+        End of the trace in microseconds; a motion that is in progress at the end may be recorded in
+        full or cut off there.
     """
     return [
         *_presence(layout, trace, until_us),
@@ -162,7 +163,7 @@ def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) 
 
 
 def speeds(trace: Trace, limits: Kinematics) -> list[Finding]:
-    """Check that the top speed stated for each straight run, if any, is equal to its limit."""
+    """Check that top speeds that the trace states for straight runs, if any, equal the limits."""
     if trace.top_speed_m_s is None:
         return []
     off = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s - limits.top_speed_m_s, 0.0)

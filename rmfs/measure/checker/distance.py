@@ -1,11 +1,15 @@
-"""Narrow phase: proves whether two moving points come closer than a limit, without sampling.
+"""Proves whether two moving points come closer than a limit, without sampling (narrow phase).
+
+This is the second phase of the search for collisions, for pairs already known to be close.
 
 Each point moves with constant acceleration, so the squared distance over a common time interval is
-a polynomial of degree four. In Bernstein form on that interval its graph lies in the convex hull of
-its coefficients: if no coefficient is below the limit, neither is the distance at any time. The
-first and last coefficients are values of the polynomial, so a violation is proven if one of them is
-below the limit. If neither applies, the interval is halved (de Casteljau). The bound converges to
-the true minimum quadratically in the length of the interval, so a few rounds suffice.
+a polynomial of degree four. In Bernstein form on that interval, the polynomial is never below its
+smallest coefficient: if no coefficient is below the squared limit, the points never come closer
+than the limit. The first and last coefficients are the values of the polynomial at the two ends of
+the interval, so a violation is proven if one of them is below the squared limit. If nothing is
+proven either way, the interval is halved (de Casteljau's algorithm), and so on. As intervals get
+shorter, the smallest coefficient converges quadratically to the minimum of the polynomial, so a few
+rounds suffice.
 """
 
 from __future__ import annotations
@@ -84,7 +88,7 @@ def below(power: Floats, limit: Floats) -> NDArray[np.bool_]:
     power
         Coefficients a_j, shape (K, 5).
     limit
-        Limit for each polynomial, in the same unit (m² here), shape (K,).
+        Limit of each polynomial, in the unit of its values (m² for squared distances), shape (K,).
     """
     violated = np.zeros(len(power), np.bool_)
     which: Index = np.arange(len(power))
@@ -115,7 +119,8 @@ def _halved(b: Floats) -> tuple[Floats, Floats]:
 def minimum(power: Floats) -> tuple[Floats, Floats]:
     """Return where on [0, 1] each polynomial is smallest, and its value there.
 
-    Uses the same bounds as `below`: halves that cannot contain a smaller value are dropped.
+    The interval is halved as in `below`; parts that cannot contain a smaller value than the
+    smallest known one are dropped.
 
     Returns
     -------
@@ -147,18 +152,22 @@ def minimum(power: Floats) -> tuple[Floats, Floats]:
 def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floats]:
     """Find pairs of pieces that come closer than a limit or, for guided robots, may do so.
 
-    Of a guided robot, only the way is known (see `Pieces`).
+    For a guided robot (see `Pieces`), only the straight line that it follows is known, not where on
+    this line it is at which time.
 
     Parameters
     ----------
+    one, other
+        The first and the second pieces of K pairs.
     limit
-        Limit of the squared distance, in m², shape (K,).
+        Limit of each pair's squared distance, in m², shape (K,).
 
     Returns
     -------
     tuple
-        Whether each pair comes, or may come, closer than the limit, shape (K,); for these pairs,
-        also time (s) and squared distance (m²) of the closest approach.
+        Whether each pair comes, or may come, closer than its limit; time (s) of the closest
+        approach; squared distance (m²) then. All have shape (K,); time and distance are meaningful
+        only for pairs that come, or may come, closer than their limit.
     """
     begin, end, power = squared_distance(one, other)
     hit = below(power, limit)
@@ -172,10 +181,10 @@ def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floa
 
 
 def squared_between_ways(one: Pieces, other: Pieces) -> Floats:
-    """Return the least squared distance of the two lines of each pair of pieces, in m², shape (K,).
+    """Return the squared distance between the lines that paired pieces cover, in m², shape (K,).
 
-    A piece covers a straight line during the common time of the pair; if the robot may be anywhere
-    on its way, the line is the whole way.
+    A piece covers the straight line that its robot drives along during the common time of the pair
+    or, if the robot is guided, the line of the whole piece.
     """
     begin = np.maximum(one.t0_s, other.t0_s)
     end = np.minimum(one.t1_s, other.t1_s)

@@ -1,4 +1,7 @@
-"""Groups consecutive violations into events, each reported once at its worst moment."""
+"""Combines successive overlaps of two bodies into events, each reported once, at its worst moment.
+
+A body is a robot, or a stored pod.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ TOGETHER_S = 1e-5
 
 
 def worst(who: tuple[Index, Index], begin_s: Floats, end_s: Floats, amount: Floats) -> list[int]:
-    """Return the index of the worst violation of every event.
+    """Return, for each event, the index of the worst of the violations (overlaps) that form it.
 
     Parameters
     ----------

@@ -73,8 +73,9 @@ def lengths(layout: Layout, trace: Trace) -> Floats:
 class Pieces:
     """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
 
-    For a guided robot (a real one in a demonstration), the trace states only the way, not the
-    robot's position on it over time. Its piece has constant speed and covers the whole way.
+    For a row of kind guided (a robot in a demonstration was held up), the trace states only the
+    straight line that the robot follows (its way), not where on this line it is at which time. The
+    piece of such a row covers the whole line at constant speed.
 
     Attributes
     ----------
@@ -85,7 +86,7 @@ class Pieces:
     x_m, y_m, vx, vy, hx, hy
         Position and velocity at `t0_s`, and half the acceleration.
     guided
-        Whether the robot may be anywhere on the piece's way at any time of the piece.
+        Whether the robot may be anywhere on the way at any time between `t0_s` and `t1_s`.
     """
 
     row: NDArray[np.int64]
@@ -116,7 +117,7 @@ class Pieces:
         )
 
     def way(self, begin_s: Floats, end_s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return the line on which each piece may be between two times, as x0, y0, x1, y1 in m."""
+        """Return the line that each robot may cover between two times, as x0, y0, x1, y1 in m."""
         return (
             *self.at(np.where(self.guided, self.t0_s, begin_s)),
             *self.at(np.where(self.guided, self.t1_s, end_s)),

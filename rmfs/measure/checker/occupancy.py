@@ -1,4 +1,4 @@
-"""Resources that hold at most one robot: queue places, and elevators with all their waypoints."""
+"""Checks that queue places, and elevators with all their waypoints, hold at most one robot each."""
 
 from __future__ import annotations
 

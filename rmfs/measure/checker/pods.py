@@ -1,4 +1,4 @@
-"""Checks that pods are conserved and share no place, and that no carried pod hits a stored one."""
+"""Checks that pods are lifted where they stand, share no place, and are not hit by carried pods."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Stays:
 
 
 def check(layout: Layout, trace: Trace, pieces: Pieces) -> list[Finding]:
-    """Find every mishandled pod and every collision with a stored pod."""
+    """Find every faulty handling of a pod and every collision of a carried with a stored pod."""
     stays, found = ledger(layout, trace)
     return [*_carrying(trace), *found, *_crossings(layout, trace, pieces, stays)]
 

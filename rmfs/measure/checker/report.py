@@ -53,7 +53,7 @@ class Finding:
     robots
         The robots concerned, ascending.
     place
-        Waypoint nearest to the event, or -1.
+        Waypoint at or near which the violation occurs; -1 if the trace lacks the robot altogether.
     amount
         Size of the violation, or number of the pod or waypoint concerned, as stated in `MEANING`.
     """
@@ -81,10 +81,10 @@ class CheckReport:
     findings
         Every violation, in order of time.
     pieces
-        Number of rows of the trace.
+        Number of motions, that is, of rows of the trace.
     pairs
-        Number of pairs of motions that were examined for overlaps of two robots, because they are
-        close in time and space.
+        Number of pairs that were examined for overlaps of two robots, because they are close in
+        time and space. A pair consists of two parts of motions, each with constant acceleration.
     """
 
     findings: list[Finding] = field(default_factory=list)

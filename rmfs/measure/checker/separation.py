@@ -27,7 +27,7 @@ TOLERANCE_M = 1e-6
 
 
 def radii(layout: Layout, trace: Trace, limits: Kinematics) -> Floats:
-    """Return the radius of each row's disc, in m: that of the robot, or of its pod if larger."""
+    """Return the radius in m of the robot in each row or, if larger, of the pod that it carries."""
     loaded = np.maximum(limits.radius_m, layout.pod_radius_m)
     return np.where(trace.pod >= 0, loaded, limits.radius_m)
 
@@ -40,7 +40,7 @@ def check(
     Returns
     -------
     tuple
-        One finding per collision, at its worst moment, and the number of pairs of motions that were
+        One finding per collision, at its worst moment, and the number of pairs of pieces that were
         examined because they are close in time and space.
     """
     radius = radii(layout, trace, limits)[pieces.row]

@@ -1,8 +1,12 @@
-"""Broad phase: finds pairs of motions that are close in time and space.
+"""Finds pairs of pieces of motion that are close in time and space (broad phase).
 
-Time is divided into slabs; in each, a motion is a box around the path driven there. The boxes of
-all slabs and tiers are placed side by side on one axis and swept once, so that the work grows with
-the number of close boxes and not with the square of the fleet.
+This is the first phase of the search for collisions of robots; the second (`distance`) examines
+the pairs.
+
+Time is divided into slabs. For each slab that a piece extends over, there is a box around the part
+of the way that is driven in the slab. The boxes of one slab and tier form a lane. The lanes are
+placed side by side along one axis and swept together, so that the work grows with the number of
+close boxes and not with the square of the number of robots.
 """
 
 from __future__ import annotations
@@ -31,14 +35,14 @@ BOXES_AT_ONCE = 50_000
 
 @dataclass(frozen=True, slots=True)
 class Boxes:
-    """Extents of motions, each within one time slab; all arrays have shape (B,).
+    """Boxes around pieces of motion, each within one slab of time; all arrays have shape (B,).
 
     Attributes
     ----------
     piece
-        Index of the piece of motion.
+        Index of the piece.
     lane
-        Slab and tier as one number; only boxes of one lane can meet.
+        Slab and tier as one number; only boxes in the same lane can overlap.
     """
 
     piece: Index
@@ -67,12 +71,14 @@ def close_pairs(
     Parameters
     ----------
     radius_m, tier, robot
-        Clearance radius, tier and robot of each piece, shape (K,).
+        For each piece: radius of the robot or, if larger, of the pod that it carries; tier; number
+        of the robot. Shape (K,).
 
     Yields
     ------
     tuple
-        A batch of different pairs: indices of the first pieces, and indices of the second pieces.
+        A batch of pairs without duplicates: an array with the index of the first piece of each
+        pair, and an array with that of the second.
     """
     for begin, end in _windows(pieces, int(robot.max(initial=0)) + 1):
         within = (pieces.t0_s < end * SLAB_S) & (pieces.t1_s > begin * SLAB_S)
@@ -96,14 +102,15 @@ def _windows(pieces: Pieces, robots: int) -> Iterator[tuple[int, int]]:
 
 
 def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -> Boxes:
-    """Divide each piece at the slab borders, and return boxes enlarged by the radius of the piece.
+    """Divide pieces at the borders of slabs; return a box per part, enlarged by `radius_m`.
 
-    A piece follows a straight line in one direction, so its end points bound it.
+    A piece follows a straight line in one direction, so the box of a part is spanned by the two end
+    points of the part.
 
     Parameters
     ----------
     begin, end
-        Numbers of the first slab and of the one after the last.
+        Number of the first slab, and of the slab after the last one.
     """
     first = np.maximum(np.floor(pieces.t0_s / SLAB_S).astype(np.int64), begin)
     last = np.minimum(np.ceil(pieces.t1_s / SLAB_S).astype(np.int64), end)

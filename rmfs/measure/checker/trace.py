@@ -59,8 +59,7 @@ class Trace:
     robot, t0_us, t1_us, kind, from_wp, to_wp, heading0_rad, heading1_rad, pod
         The columns, each of shape (K,).
     top_speed_m_s
-        Top speed of each straight run; None if the trace does not contain this column, in which
-        case all robots drive at their own top speed.
+        Top speed of each straight run; None if the trace does not contain this column.
     """
 
     robot: NDArray[np.int64]

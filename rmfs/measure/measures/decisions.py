@@ -1,4 +1,4 @@
-"""Number and duration of decisions, by their source."""
+"""Measures of decisions: their number, sources and wall time, and questions to optimisers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SOURCES = {
 
 
 class Decisions(Measure):
-    """Number, sources and wall time of the decisions of all controllers."""
+    """Decisions of all controllers: number, wall time, and share of each source in `SOURCES`."""
 
     columns = (
         Column("decisions", INTEGER, "decisions", "Decisions made by all controllers"),
@@ -47,7 +47,7 @@ class Decisions(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Count decisions, sum up wall time, and compute the share of each source."""
+        """Return the number of decisions, the total wall time, and the share of each source."""
         controllers = run.tables["controllers"]
         counts = {source: int(controllers[f"{source}_decisions"].sum()) for source in SOURCES}
         total = sum(counts.values())
@@ -59,7 +59,7 @@ class Decisions(Measure):
 
 
 class Optimisers(Measure):
-    """Questions to optimisers: their number, optimality gaps, and times until the answers."""
+    """Questions to optimisers: number, failures, optimality gaps, and times until the answers."""
 
     columns = (
         Column("optimiser_calls", INTEGER, "calls", "Questions to optimisers"),
@@ -111,7 +111,7 @@ class Optimisers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return number, failures, optimality gaps, simulated and wall times of the questions."""
+        """Return the numbers of questions and failures, mean gaps, and simulated and wall times."""
         decisions = run.tables["decisions"]
         asked = decisions[decisions["source"] == "optimiser"]
         return {

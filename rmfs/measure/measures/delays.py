@@ -1,4 +1,4 @@
-"""Breakdown of order turnover times."""
+"""Breakdown of the turnover times of orders."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LESS = (
 
 
 class Delays(Measure):
-    """Complete breakdown of the time from arrival to completion of orders."""
+    """The parts into which the turnover time of orders is divided, such as driving and service."""
 
     columns = tuple(
         Column(
@@ -35,7 +35,7 @@ class Delays(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return each part's share of the total turnover time of all completed orders."""
+        """Return the share of each part in the total turnover time of all completed orders."""
         total = by_order(run.tables["delays"]).sum()
         whole = float(total["turnover_s"])
         return {f"{part}_share": ratio(float(total[f"{part}_s"]), whole) for part in PARTS}

@@ -1,4 +1,4 @@
-"""Disturbances of the run."""
+"""Measures of disturbances and of motions that started late."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ class Disturbances(Measure):
             "motions",
             "Motions that started late, in scenarios with late motions",
         ),
-        Column("lateness_s", REAL, "s", "Total delay of the late motions"),
+        Column("lateness_s", REAL, "s", "Total time by which the late motions started late"),
         Column(
             "plans_repaired",
             INTEGER,
             "plans",
-            "Plans that were replanned because a robot in front started a motion late",
+            "Plans that were replaced because another robot started a motion late",
         ),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return figures on disturbances, late motions, and plans repaired because of them."""
+        """Return figures on disturbances, late motions, and plans repaired after late motions."""
         counters = run.recorder.counters
         return {
             "disturbances": int(counters["disturbances"]),

@@ -1,4 +1,4 @@
-"""Energy drawn by robots; empty cells if energy is not modelled."""
+"""Measures of the robots' energy and batteries; empty if these are not modelled."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PARTS = ("drive", "turn", "lift", "standby", "recuperated")
 
 
 class Energy(Measure):
-    """Energy of the fleet."""
+    """Energy drawn by all robots."""
 
     columns = (
         Column(
@@ -44,7 +44,7 @@ class Energy(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the fleet's energy, in total, per unit and by use; nan if it is not modelled."""
+        """Return the energy in total, per picked unit and by use; nan if energy is not modelled."""
         counted = run.recorder.energy.final
         if not counted:
             return dict.fromkeys((column.name for column in self.columns), nan)
@@ -106,7 +106,7 @@ class Batteries(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return energy charged, charging times, cycles and levels; empty without batteries."""
+        """Return figures on charging and on the batteries; empty without batteries."""
         energy = run.recorder.energy
         batteries, counted, samples = energy.batteries, energy.final, energy.samples
         if batteries is None:

@@ -1,4 +1,4 @@
-"""Identification of the run: the columns that distinguish it from other runs."""
+"""The columns that identify a run: its inputs, seed and times, and the size of its warehouse."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Heading(Measure):
-    """Names, seed, times, and the size of the warehouse."""
+    """Seed, times, size of the warehouse, and names of layout, scenario and controllers."""
 
     columns = (
         Column("layout", TEXT, "", "Name of the layout"),
@@ -37,7 +37,7 @@ class Heading(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the description of the run."""
+        """Return the columns that identify the run."""
         layout = run.layout
         return {
             **dict(zip(("layout", "scenario", "controllers"), run.names, strict=True)),

@@ -1,4 +1,4 @@
-"""Distances and time budgets of robots."""
+"""Distances and trips of robots, and how their time is divided among states."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Motion(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the fleet's distances, number and mean times of its trips, and number of lifts."""
+        """Return distances, number of trips, their mean time and delay, and number of lifts."""
         motion, trips = run.recorder.motion, run.tables["trips"]
         lasted = trips["end_s"] - trips["start_s"]
         delay = (lasted - trips["unhindered_s"])[trips["kind"] != "to_station"]
@@ -69,14 +69,14 @@ class Motion(Measure):
 
 
 class RobotTime(Measure):
-    """Shares of the robots' time by state, and numbers of tasks."""
+    """Shares of the robots' time by state, and number of tasks of each kind."""
 
     columns = (
         Column(
             "robot_busy_share",
             REAL,
             "share",
-            "Share of robot time with a task other than resting",
+            "Share of robot time with a pick, replenish, park or reposition task",
         ),
         Column("robot_moving_share", REAL, "share", "Share of robot time spent driving"),
         Column(
@@ -115,7 +115,10 @@ class RobotTime(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the fleet's busy share, its shares of time by state, and its tasks by kind."""
+        """Return the busy share, the share of time in each state, and the tasks started, by kind.
+
+        A robot is busy while it has one of the tasks in `BUSY`.
+        """
         robots = run.tables["robots"]
         robot_time = run.layout.robots * run.logs.duration_s
         busy = sum(robots[f"task_{task}_s"].sum() for task in BUSY)

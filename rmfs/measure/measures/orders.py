@@ -1,4 +1,4 @@
-"""Times and numbers of pick orders."""
+"""Times of completed orders, and counts of arriving, waiting and open orders."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class OrderTimes(Measure):
 
 
 class Backlog(Measure):
-    """Numbers of arrived and waiting orders."""
+    """Numbers of orders that arrived, that wait for a station, and that are open."""
 
     columns = (
         Column(
@@ -115,7 +115,7 @@ class Backlog(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return numbers of waiting orders (mean, final), open orders (mean) and arrivals."""
+        """Return mean and final backlog, mean number of open orders, and number of arrivals."""
         orders, counters = run.logs.orders, run.recorder.counters
         measured = (run.start_s, run.end_s)
         waiting = Steps.between(

@@ -1,4 +1,4 @@
-"""Orders after the pick stations; empty cells if the scenario has no packing."""
+"""Orders on their way from pick stations to packing; columns are empty without packing."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ class Packing(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return counts, times and utilisation of packing; empty without packing."""
+        """Return counts, times and utilisation of packing; None or nan if there is no packing."""
         given = run.recorder.packing.given
         if given is None:
             return {

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Planning(Measure):
-    """Counts of the path planner."""
+    """Counts and times of path planning."""
 
     columns = (
         Column("plans", INTEGER, "plans", "Paths planned and accepted"),
@@ -55,7 +55,7 @@ class Planning(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the counters of path planning."""
+        """Return counts and times of path planning."""
         counters = run.recorder.counters
         names = ("plans", "plan_failures", "replans", "expansions")
         return {
@@ -67,7 +67,7 @@ class Planning(Measure):
 
 
 class Safety(Measure):
-    """Findings of the independent checker."""
+    """Collisions found by the independent trace checker."""
 
     columns = (
         Column(
@@ -81,5 +81,8 @@ class Safety(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the number of overlaps of two bodies; None if the trace was not checked."""
+        """Return the number of collisions; None if the trace was not checked.
+
+        A collision is an overlap of two robots, or of a carried and a stored pod.
+        """
         return {"collisions": None if run.report is None else run.report.collisions}

@@ -38,7 +38,7 @@ class Replenishment(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return statistics of the times of stored bundles, number of arrivals, and backlog."""
+        """Return the number of bundles that arrived, the backlog, and times of stored bundles."""
         stored, bundles = run.logs.stored_now, run.logs.bundles
         waiting = Steps.between(bundles["created_s"], bundles["assigned_s"])
         return {

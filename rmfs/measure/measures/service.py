@@ -1,4 +1,7 @@
-"""On-time service: orders packed, or picked if the scenario has no packing, by their due time."""
+"""On-time service: whether orders are done by their due time.
+
+An order is done when it is packed or, if the scenario has no packing, when it is picked.
+"""
 
 from __future__ import annotations
 
@@ -78,7 +81,11 @@ class Service(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return on-time shares, lateness, and orders not done ("done" as in `on_time_share`)."""
+        """Return on-time shares, and the lateness of the orders done.
+
+        For the end of the run, also return the number of overdue orders and the age of the oldest
+        order that is not done.
+        """
         orders, names = served(run.logs), class_names(run.logs)
         done, cancelled, overdue = orders["done"], orders["cancelled"], orders["overdue"]
         counted, in_time = done | overdue | cancelled, orders["on_time"]

@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 class ShortOrders(Measure):
-    """Orders cancelled, delivered in part, or stuck at the end."""
+    """Orders that were cancelled, delivered in part, or stuck at the end.
+
+    An order is stuck if it waits for a station and stock cannot serve it.
+    """
 
     columns = (
         Column(
@@ -26,7 +29,7 @@ class ShortOrders(Measure):
             "orders_partial",
             INTEGER,
             "orders",
-            "Orders completed without some units because stock could not serve them",
+            "Orders completed without those of their units that were not in stock",
             better=LESS,
         ),
         Column(
@@ -53,7 +56,10 @@ class ShortOrders(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Count orders cancelled, partial or stuck at the end, and units not delivered."""
+        """Return the numbers of cancelled, partly delivered and stuck orders.
+
+        Also return the number of units not delivered, and the age of the oldest stuck order.
+        """
         orders = run.tables["orders"]
         cancelled, done = orders["cancelled_s"].notna(), orders["completed_s"].notna()
         cut = orders["units_cut"]

@@ -15,7 +15,7 @@ KINDS = ("pick", "replenishment")
 
 
 class Stations(Measure):
-    """Shares of time for which stations are idle or switched on."""
+    """Share of time for which stations are idle, and share for which they are switched on."""
 
     columns = (
         Column(
@@ -46,7 +46,11 @@ class Stations(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return mean idle and active shares by kind of station; nan for a kind that is absent."""
+        """Return the mean idle and active shares of pick stations and of replenishment stations.
+
+        A station is active while it is switched on. If there are no stations of a kind, the shares
+        of this kind are nan.
+        """
         stations = run.tables["stations"]
         told: dict[str, float] = {}
         for share in ("idle", "active"):

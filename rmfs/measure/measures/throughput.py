@@ -1,4 +1,4 @@
-"""Throughput: counts, rates, and their ratio to an upper bound."""
+"""Throughput: counts, hourly rates, and the rates that the stations could have reached."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Throughput(Measure):
             "orders_completed",
             INTEGER,
             "orders",
-            "Pick orders whose last unit was picked",
+            "Orders that have left their pick stations completely picked",
             better=MORE,
         ),
         Column(
@@ -48,7 +48,7 @@ class Throughput(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the totals of all stations and their rates per hour, and the units stored."""
+        """Return the counts over all stations, the hourly rates, and the number of units stored."""
         handled = ("orders_completed", "lines_picked", "units_picked", "bundles_stored")
         counts = {name: run.handled(name) for name in handled}
         hours = run.logs.duration_s / 3600.0
@@ -59,7 +59,7 @@ class Throughput(Measure):
 
 
 class Potential(Measure):
-    """Upper bounds on the units that the stations could have picked."""
+    """Units per hour that the pick stations could have picked, and the units score."""
 
     columns = (
         Column(
@@ -83,9 +83,10 @@ class Potential(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the upper bound, the picked units as a share of it, and `units_per_h_at_pile_on`.
+        """Return the upper bound, the units score, and `units_per_h_at_pile_on`.
 
-        All are nan if pickers' handling times can be arbitrarily short. A warning is issued if the
+        All three are nan if pickers may handle units in arbitrarily short times;
+        `units_per_h_at_pile_on` is nan in every scenario with pickers. A warning is issued if the
         bound is exceeded.
         """
         duration_s = run.logs.duration_s

@@ -51,7 +51,10 @@ class Visits(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the number of visits in which something was handled, and means per such visit."""
+        """Return the number of visits in which something was handled.
+
+        Units, lines, orders and bundles are returned as means per such visit.
+        """
         picks = int((run.logs.visits["units"] > 0).sum())
         refills = int((run.logs.visits["bundles"] > 0).sum())
         late_bound = int(run.logs.units_now["late_bound"].sum())

@@ -1,4 +1,4 @@
-"""Backlogs over time."""
+"""Backlogs and open orders over time."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def backlog(series: pd.DataFrame, ax: Axes) -> None:
-    """Draw orders waiting, orders open at stations, and bundles waiting, from a table `series`."""
+    """Draw the waiting orders, open orders and waiting bundles in a table `series` over time."""
     time_h = series["time_s"] / 3600.0
     for column, label, colour, style in (
         ("backlog_orders", "orders waiting", colours.PICK_STATION, "-"),

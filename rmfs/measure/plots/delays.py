@@ -1,4 +1,4 @@
-"""Breakdown of order turnover over time."""
+"""Breakdown of the turnover time of orders, by the time of their completion."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ BINS = 24
 
 
 def delays(orders: pd.DataFrame, ax: Axes) -> None:
-    """Plot the mean of each part of order turnover, stacked, over the time of completion.
+    """Plot the mean of each part of turnover time, stacked, over the time of completion.
 
     Parameters
     ----------
     orders
-        The table `delays`.
+        The table `delays`, which has a column for each part.
     """
     each = orders.groupby("order").mean(numeric_only=True)
     ended = each["completed_s"].to_numpy() / 3600.0

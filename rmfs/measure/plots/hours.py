@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def hours(ax: Axes) -> None:
-    """Label the time axis, in hours."""
+    """Label the horizontal axis as time in h, and remove its margins."""
     ax.set_xlabel("time (h)")
     ax.margins(x=0)
 
@@ -26,12 +26,13 @@ def per_hour(series: pd.DataFrame, column: str, bin_s: float) -> tuple[Floats, F
     Parameters
     ----------
     bin_s
-        Minimum length of a bin in s, unless the run is too short for three such bins.
+        Minimum length of a bin in s. If the series is shorter than three such bins, bins are
+        shorter.
 
     Returns
     -------
     tuple
-        Midpoint of each bin in h, and rate in 1/h.
+        Midpoint of each bin in h, and rate in each bin in 1/h.
     """
     end, length = series["time_s"].to_numpy(), series["interval_s"].to_numpy()
     begin_s, total_s = float(end[0] - length[0]), float(length.sum())

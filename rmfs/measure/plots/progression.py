@@ -1,4 +1,7 @@
-"""Units and distance per hour over time, as in figure 5a of Merschformann, Xie and Li (2018)."""
+"""Rates over time: units picked per hour, and km driven per hour by all robots.
+
+As in figure 5a of Merschformann, Xie and Li (2018).
+"""
 
 from __future__ import annotations
 
@@ -16,16 +19,17 @@ if TYPE_CHECKING:
 def progression(
     series: pd.DataFrame, ax: Axes, *, bin_s: float = 600.0, bound_per_h: float | None = None
 ) -> None:
-    """Plot units per hour as a solid line and km per hour as a dashed line on a second axis.
+    """Plot units picked per hour (solid) and, on a second axis, km driven per hour (dashed).
 
     Parameters
     ----------
     series
         The table `series` of a run.
     bin_s
-        Minimum length of the time bins in s, unless the run is too short for three such bins.
+        Minimum length of the time bins in s. If the series is shorter than three such bins, bins
+        are shorter.
     bound_per_h
-        Upper bound on units per hour, drawn as a dotted line. Default: none.
+        Upper bound on units picked per hour, drawn as a dotted line. Default: no bound.
     """
     time_h, units = per_hour(series, "units_picked", bin_s)
     _, metres = per_hour(series, "distance_m", bin_s)

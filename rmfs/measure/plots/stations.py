@@ -12,7 +12,10 @@ if TYPE_CHECKING:
 
 
 def stations(frame: pd.DataFrame, ax: Axes) -> None:
-    """Draw a bar per station, replenishment stations hatched, from a table `stations`."""
+    """Draw the busy share of each station in a table `stations` as a bar.
+
+    The bars of replenishment stations are hatched.
+    """
     for kind, colour, hatch in (
         ("pick", colours.PICK_STATION, ""),
         ("replenishment", colours.REPLENISHMENT_STATION, "//"),

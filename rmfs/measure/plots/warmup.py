@@ -1,4 +1,4 @@
-"""Convergence of the rate of picked units, for choosing a warm-up."""
+"""Convergence of the rate of picking, for choosing the length of a warm-up."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ if TYPE_CHECKING:
 
 
 def warmup(series: pd.DataFrame, ax: Axes, *, column: str = "units_picked") -> None:
-    """Plot the rate in each minute, its moving average, and warm-ups proposed by MSER-5 and Welch.
+    """Plot the rate in each minute, its moving average, and two proposals for the warm-up.
 
-    The warm-up is not recorded in the series, so use a run with `warmup_s = 0`.
+    One proposal is by MSER-5, the other by Welch's method (`rmfs.measure.warmup`). The series
+    starts after the run's own warm-up, so use a run with `warmup_s = 0`.
 
     Parameters
     ----------

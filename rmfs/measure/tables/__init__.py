@@ -120,12 +120,12 @@ DECLARED: dict[str, Sequence[Column]] = {
 
 
 class Made(Mapping[str, "pd.DataFrame"]):
-    """The tables except the footprint, each made on first access.
+    """The tables of a run by name, except the footprint; each is made when it is first accessed.
 
     Parameters
     ----------
     logs
-        The recorded data.
+        The recorded data of the run.
     """
 
     def __init__(self, logs: Logs) -> None:

@@ -1,4 +1,4 @@
-"""The rate of a pick station at a given pile-on if the next pod were always ready."""
+"""How fast a pick station would work at a given pile-on if the next pod were always ready."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ if TYPE_CHECKING:
 
 
 def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) -> float:
-    """Return the rate of a station at a given pile-on if the next pod is always ready.
+    """Return the maximum rate of a station at a given mean pile-on if the next pod is always ready.
 
-    Each of the p units of a visit except the last occupies robot and station for max(T, K), where T
-    is `unit_transfer_s` and K is `unit_pick_s`. The last one occupies the robot for K; then the
-    robot leaves. The next robot arrives at least a time c later (`change_s`); its first pick starts
-    only when the station's time T for the last unit is over, too. A visit therefore lasts at least
-    (p - 1) max(T, K) + max(T, K + c). This is linear in p, so the mean pile-on gives a lower bound
-    on the mean duration of a visit.
+    For each unit, the station is busy for a time T (`unit_transfer_s`), and the robot must stay for
+    a time K (`unit_pick_s`). Each of the p units of a visit except the last therefore takes
+    max(T, K). From the start of the last unit to the start of the next visit's first unit, at least
+    max(T, K + c) passes: the robot leaves after K, and the next robot arrives at least a time c
+    later (`change_s`). A visit and the change of robots after it thus take at least
+    (p - 1) max(T, K) + max(T, K + c). This is linear in p, so its value at the mean pile-on is a
+    lower bound on the mean time of a visit and a change.
 
     Parameters
     ----------
     units_per_visit
-        Mean pile-on p; infinite if pods never change.
+        Mean pile-on of the station; infinite if its pod never changes.
 
     Returns
     -------
@@ -41,12 +42,13 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
 
 
 def change_s(layout: Layout, waypoint: int) -> float:
-    """Return the minimum time between one robot's departure and the next one's arrival, in s.
+    """Return the minimum time from one robot's departure to the next one's arrival, in s.
 
-    The departing robot turns from the edge on which it arrived to an edge that leads away, and
-    clears the waypoint when it reaches the end of that edge. Only then may the next robot enter its
-    last edge before the waypoint. The result is the minimum over both edges and over the kinds of
-    robots; at the outer end of an edge, robots need not stop.
+    The departing robot turns from the edge on which it arrived to an edge that leads away from the
+    waypoint, and clears the waypoint when it reaches the end of the latter edge. Only then may the
+    next robot enter the edge on which it arrives. The result is the minimum over all choices of
+    these edges and over the kinds of robots. It is assumed that robots stop at the waypoint only,
+    not at the other ends of these edges.
     """
     inward, outward = list(_edges_in(layout, waypoint)), list(_edges_out(layout, waypoint))
     if not inward or not outward:

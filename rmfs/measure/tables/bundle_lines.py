@@ -1,4 +1,4 @@
-"""The table `bundle_lines`: bundles that were read from a file, with all columns of the file."""
+"""The table `bundle_lines`: bundles read from a file, with all additional columns of the file."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ KEPT = ("sku", "units", "created_s", "stored_s", "pod", "station")
 
 
 def bundle_lines(logs: Logs) -> pd.DataFrame:
-    """Make a row for every bundle that comes from a file and is in the table of bundles."""
+    """Make a row for every bundle that comes from a file and is in the table `bundles`."""
     stream = logs.recorder.bundle_stream
     bundles = seen_bundles(logs)
     bundles = bundles[bundles["in_file"] >= 0]

@@ -1,4 +1,4 @@
-"""The tables of decisions, answers of optimisers, and controllers."""
+"""The tables `decisions`, `answers` (by optimisers) and `controllers`."""
 
 from __future__ import annotations
 
@@ -159,9 +159,10 @@ CONTROLLERS = (
 
 
 def decisions(logs: Logs) -> pd.DataFrame:
-    """Make a row per call in which a controller itself decided, and per question to an optimiser.
+    """Make a row per call of a controller, and per question to an optimiser, sorted by time.
 
-    All rows are of the measured time, sorted by time.
+    A call has a row only if the controller made decisions in it without an optimiser. The warm-up
+    is left out.
     """
     import pandas as pd
 
@@ -187,7 +188,10 @@ def decisions(logs: Logs) -> pd.DataFrame:
 
 
 def answers(logs: Logs) -> pd.DataFrame:
-    """Make a row per question to an optimiser, warm-up included, as needed for a replay."""
+    """Make a row per question to an optimiser, those of the warm-up included.
+
+    A later run with the pacing `replay` needs all of them.
+    """
     asked = logs.recorder.questions
     solutions = logs.recorder.solutions
     return tidy(

@@ -1,11 +1,11 @@
-"""The table of delays: a complete breakdown of the time of every order line.
+"""The table `delays`: for each order line, the parts of its order's turnover time.
 
-For each line, several moments lie between the arrival and the completion of its order: the order is
-assigned to a station; a robot gets the task to bring the pod of the line's last unit; it lifts the
-pod; it enters the queue zone; it reaches the station; the unit has been handled; the order is
-complete. The times between successive moments, some of them divided further, have names and add up
-to the turnover of the order. If the pod was already under way when the order was assigned, the
-steps before the assignment do not count.
+The parts are the times between the following moments (some of these times are divided further): the
+order arrives; the order is assigned to a station; a robot gets the task to bring the pod from which
+the line's last unit is picked; the robot lifts the pod; the robot enters the queue zone; the robot
+reaches the station; the line's last unit has been handled; the order is complete. The parts add up
+to the order's turnover time. If the pod was already under way when the order was assigned, moments
+of the robot before the assignment are replaced by the time of the assignment.
 """
 
 from __future__ import annotations
@@ -101,7 +101,10 @@ def delays(logs: Logs) -> pd.DataFrame:
 
 
 def by_order(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return each order's turnover and its parts in s, as means over the order's lines."""
+    """Return the turnover time of each order in the table `delays`, and the parts of this time.
+
+    Each part is the mean over the order's lines, in s.
+    """
     columns = ["turnover_s", *(f"{part}_s" for part in PARTS)]
     return frame.groupby("order")[columns].mean()
 

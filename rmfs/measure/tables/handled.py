@@ -28,7 +28,7 @@ PICKS = (
         "picker",
         INTEGER,
         "",
-        "Picker, as in the table of pickers; -1 if the scenario has no pickers. Then handling_s "
+        "Picker, as in the table of pickers; -1 if the scenario has no pickers, and handling_s "
         "and fatigue are empty, layer and face are -1, and error, noticed and turned are false",
     ),
     Column("handling_s", REAL, "s", "Time for which the unit occupied the picker, rework included"),
@@ -77,7 +77,10 @@ def picks(logs: Logs) -> pd.DataFrame:
 
 
 def bundles(logs: Logs) -> pd.DataFrame:
-    """Make a row per bundle that was waiting or stored in the measured time, sorted by arrival."""
+    """Make a row per bundle, except bundles stored before the measured time.
+
+    The rows are sorted by arrival.
+    """
     frame = seen_bundles(logs).drop(columns="in_file")
     frame["turnover_s"] = frame["stored_s"] - frame["created_s"]
     frame["throughput_time_s"] = frame["stored_s"] - frame["assigned_s"]
@@ -85,7 +88,10 @@ def bundles(logs: Logs) -> pd.DataFrame:
 
 
 def seen_bundles(logs: Logs) -> pd.DataFrame:
-    """Return the bundles of the table of bundles, with their positions in the file of bundles."""
+    """Return the bundles of the table `bundles`, with their positions in the file of bundles.
+
+    The position (`in_file`) is -1 for a bundle that was not read from a file.
+    """
     frame = logs.bundles.rename(columns={"time_s": "stored_s"})
     frame = frame[~(frame["stored_s"] < logs.start_s)]
     return frame.sort_values("created_s", kind="stable", ignore_index=True)

@@ -1,4 +1,4 @@
-"""The recorder's logs as frames, each made once and shared by all tables of a run."""
+"""The recorder's logs as data frames, each made once and shared by all tables of a run."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ if TYPE_CHECKING:
 
 
 class Logs:
-    """The recorded data of a run, as frames.
+    """The recorded data of a run, as data frames.
 
-    Frames whose names end in `_now` cover only the measured time; the others also cover the
-    warm-up, because work that starts in it may end in the measured time.
+    `picks_by_hand` and the frames whose names end in `_now` cover only the measured time. The
+    others also cover the warm-up, because work that starts in the warm-up may end in the measured
+    time.
     """
 
     def __init__(self, recorder: Recorder) -> None:
@@ -46,18 +47,18 @@ class Logs:
 
     @cached_property
     def picks_by_hand(self) -> pd.DataFrame:
-        """How pickers handled each unit in `units_now`; empty without pickers."""
+        """How pickers handled each unit in `units_now`; empty if pickers are not modelled."""
         told = framed(self.recorder.pickers.units)
         return told.iloc[len(self.units) - len(self.units_now) :].reset_index(drop=True)
 
     @cached_property
     def lines(self) -> pd.DataFrame:
-        """Lines finished."""
+        """Order lines finished."""
         return framed(self.recorder.lines)
 
     @cached_property
     def lines_now(self) -> pd.DataFrame:
-        """Lines finished in the measured time."""
+        """Order lines finished in the measured time."""
         return self._since(self.lines)
 
     @cached_property
@@ -132,8 +133,8 @@ class Logs:
     def visits(self) -> pd.DataFrame:
         """Visits of pods to stations, with the `units` and `bundles` handled in the measured time.
 
-        Each unit or bundle counts for the last visit that had begun at its station by the time of
-        its handling.
+        Each unit or bundle is counted in the last visit to its station that began before it was
+        handled.
         """
         frame = framed(self.recorder.visits)
         frame = frame.sort_values(["station", "begin_s"], ignore_index=True)
@@ -148,7 +149,7 @@ class Logs:
 
 
 def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
-    """Return a log as a frame, followed by the rows `more`, which have the same columns."""
+    """Return a log as a data frame, followed by the rows `more`, which have the same columns."""
     import pandas as pd
 
     columns = log.columns()
@@ -159,7 +160,7 @@ def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
 
 
 def count(index: pd.Series[int], length: int) -> NDArray[np.int64]:
-    """Return how often each of the indices 0 to length - 1 occurs, shape (length,)."""
+    """Return how often each of the numbers 0 to length - 1 occurs in `index`, shape (length,)."""
     return np.bincount(index.to_numpy(), minlength=length)
 
 

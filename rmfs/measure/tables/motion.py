@@ -1,4 +1,4 @@
-"""The tables of trips and of the heat map, as counted by traffic."""
+"""The tables `trips`, `plans` and `heat`, made from the records of `rmfs.traffic`."""
 
 from __future__ import annotations
 
@@ -76,10 +76,20 @@ HEAT = (
     Column("tier", INTEGER, "", "Floor"),
     Column("x_m", REAL, "m", "Position"),
     Column("y_m", REAL, "m", "Position"),
-    Column("visits", INTEGER, "visits", "Robots that passed or stopped"),
-    Column("loaded_visits", INTEGER, "visits", "Robots that passed or stopped with a pod"),
+    Column("visits", INTEGER, "visits", "Number of times that a robot passed or stopped here"),
+    Column(
+        "loaded_visits",
+        INTEGER,
+        "visits",
+        "Number of times that a robot with a pod passed or stopped here",
+    ),
     *(
-        Column(f"{task}_visits", INTEGER, "visits", f"Robots that passed or stopped, {what}")
+        Column(
+            f"{task}_visits",
+            INTEGER,
+            "visits",
+            f"Number of times that a robot passed or stopped here, {what}",
+        )
         for task, what in _PURPOSES.items()
     ),
     Column("waiting_s", REAL, "s", "Time that robots stood here, excluding idle ones"),
@@ -119,7 +129,7 @@ def trips(logs: Logs) -> pd.DataFrame:
 
 
 def plans(logs: Logs) -> pd.DataFrame:
-    """Make a row per search for the plan of a trip, warm-up included.
+    """Make a row per search for the plan of a trip, including searches in the warm-up.
 
     The table is empty if searches take no simulated time.
     """
@@ -128,7 +138,7 @@ def plans(logs: Logs) -> pd.DataFrame:
 
 
 def heat(logs: Logs) -> pd.DataFrame:
-    """Make a row per waypoint, for the measured time."""
+    """Make a row per waypoint, with visits and waiting times of robots in the measured time."""
     layout, counted = logs.layout, logs.recorder.heat
     return tidy(
         "heat",

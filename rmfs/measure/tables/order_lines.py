@@ -1,4 +1,4 @@
-"""The table `order_lines`: lines that were read from a file, with all columns of the file."""
+"""The table `order_lines`: order lines read from a file, with the file's additional columns."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ORDER_LINES = (
 
 
 def order_lines(logs: Logs) -> pd.DataFrame:
-    """Make a row per line of each order that comes from a file and is in the table of orders."""
+    """Make a row per line of each order that comes from a file and is in the table `orders`."""
     stream = logs.recorder.order_stream
     orders = seen(logs)
     orders = orders[orders["in_file"] >= 0]
@@ -58,7 +58,15 @@ def order_lines(logs: Logs) -> pd.DataFrame:
 
 
 def with_columns_of(file: OrderFile, line: NDArray[np.int64], frame: pd.DataFrame) -> pd.DataFrame:
-    """Add the user's own columns of a file to a table whose rows are lines of this file."""
+    """Add the additional columns of a file to a table whose rows describe lines of the file.
+
+    Parameters
+    ----------
+    line
+        For each row of the table, the index of its line in `file`.
+    frame
+        The table, which is changed and returned.
+    """
     import pandas as pd
 
     for name, (codes, texts) in file.columns.items():

@@ -99,5 +99,5 @@ def _pods(logs: Logs, order: pd.Series[int]) -> NDArray[np.int64]:
 
 
 def completed(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return only the completed orders."""
+    """Return the rows of completed orders."""
     return frame[frame["completed_s"].notna()]

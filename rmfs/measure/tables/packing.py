@@ -1,4 +1,8 @@
-"""The tables of parcels and totes: orders after the pick stations; empty without packing."""
+"""The tables of parcels and totes; empty if the scenario has no packing.
+
+An order becomes a parcel when it, or the first part of it, leaves a pick station. Each part of a
+split order leaves in a tote of its own.
+"""
 
 from __future__ import annotations
 
@@ -28,13 +32,13 @@ PARCELS = (
         "arrived_s",
         REAL,
         "s",
-        "When the first tote of the order reached the wall; empty if none did",
+        "When the first tote of the order reached the put wall; empty if none did",
     ),
     Column(
         "consolidated_s",
         REAL,
         "s",
-        "When the last tote of the order reached the wall; empty if not yet, or never",
+        "When the last tote of the order reached the put wall; empty if not yet, or never",
     ),
     Column("packing_s", REAL, "s", "When a packer started with the order; empty if not yet"),
     Column("packed_s", REAL, "s", "When the order was packed; empty if not yet"),
@@ -45,7 +49,9 @@ TOTES = (
     Column("order", INTEGER, "", "Ordinal of arrival of the order"),
     Column("station", INTEGER, "", "Pick station"),
     Column("released_s", REAL, "s", "When the tote left the pick station"),
-    Column("arrived_s", REAL, "s", "When the tote reached the wall; empty if not yet, or never"),
+    Column(
+        "arrived_s", REAL, "s", "When the tote reached the put wall; empty if not yet, or never"
+    ),
     Column(
         "consolidated_s",
         REAL,
@@ -62,7 +68,7 @@ TOTES = (
 
 
 def parcels(logs: Logs) -> pd.DataFrame:
-    """Make a row per order that has left a pick station at least in part, sorted by arrival.
+    """Make a row per order that has left a pick station at least in part, in order of arrival.
 
     Orders packed before the measured time are left out.
     """

@@ -47,7 +47,7 @@ PICKERS = (
 
 
 def pickers(logs: Logs) -> pd.DataFrame:
-    """Make a row per picker of the scenario, for the measured time."""
+    """Make a row per picker of the scenario: presence, work and errors in the measured time."""
     staff = logs.recorder.pickers.staff
     people = [] if staff is None else staff.pickers
     number = len(people)

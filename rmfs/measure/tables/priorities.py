@@ -1,4 +1,4 @@
-"""Service by priority: the orders of every class, on time and late."""
+"""Service by priority: how many orders of each class were done on time, and their lateness."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ PRIORITIES = (
 
 
 def priorities(logs: Logs) -> pd.DataFrame:
-    """Make a row per class of orders, for the measured time."""
+    """Make a row per class of orders: its service in the measured time."""
     orders, names, weights = served(logs), class_names(logs), class_weights(logs)
     rows = [
         {"priority": name, "weight": weight, **_of(orders[orders["class"] == number])}
@@ -76,7 +76,7 @@ def class_names(logs: Logs) -> tuple[str, ...]:
 
 
 def class_weights(logs: Logs) -> tuple[float, ...]:
-    """Return the weight of each class's lateness."""
+    """Return the weight of the lateness of each class, in the order of `class_names`."""
     due = logs.recorder.due
     if isinstance(due, ClassesDue):
         return tuple(one.weight for one in due.classes)
@@ -84,15 +84,16 @@ def class_weights(logs: Logs) -> tuple[float, ...]:
 
 
 def served(logs: Logs) -> pd.DataFrame:
-    """Return the orders from which service is measured, one per row.
+    """Return the orders by which service is measured, one per row.
 
     Returns
     -------
     DataFrame
         Columns `order`, `created_s`, `due_s`, `done_s` (when the order was packed or, without
-        packing, picked; empty if not yet), `cancelled_s`, `class`, and the flags `done`,
-        `cancelled`, `overdue` and `on_time`. Orders done or cancelled before the measured time are
-        excluded. If an order still waits at the end and is not overdue, all its flags are false.
+        packing, picked; empty if not yet), `cancelled_s`, `class` (position of its name in
+        `class_names`), and the flags `done`, `cancelled`, `overdue` (neither done nor cancelled,
+        and due before the end) and `on_time`. Orders done or cancelled before the measured time are
+        excluded. An order that is neither done nor cancelled nor overdue has only false flags.
     """
     frame = seen(logs)[["order", "created_s", "due_s", "completed_s", "cancelled_s"]]
     frame = frame.rename(columns={"completed_s": "done_s"})

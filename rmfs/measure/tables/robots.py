@@ -1,4 +1,4 @@
-"""The table of robots, and their tasks over time."""
+"""The table of robots, and how many of them have a task of a given kind at any time."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ _ENERGY = (
 
 
 def robots(logs: Logs) -> pd.DataFrame:
-    """Make a row per robot, for the measured time."""
+    """Make a row per robot: its distances, times and counts in the measured time."""
     number, motion = logs.layout.robots, logs.recorder.motion
     columns: dict[str, Any] = {
         "robot": np.arange(number),

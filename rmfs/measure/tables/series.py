@@ -109,7 +109,10 @@ SERIES = (
 
 
 def series(logs: Logs) -> pd.DataFrame:
-    """Make a row per minute: counts and means of the interval, and levels at its end."""
+    """Make a row per minute of the measured time; the last row may cover less than a minute.
+
+    Counts and means cover the minute; backlogs, stock, tasks and batteries are those at its end.
+    """
     ends = np.array([time for time, _ in logs.recorder.samples])
     edges = np.concatenate([[logs.start_s], ends])
     length = np.diff(edges)
@@ -149,7 +152,10 @@ def series(logs: Logs) -> pd.DataFrame:
 
 
 def motion_per_interval(logs: Logs) -> dict[str, Floats]:
-    """Return the increase of the fleet's totals of distance (m) and times (s) in each interval."""
+    """Return, by name, the fleet's total distances (m) and times (s) in each interval.
+
+    The names are those of `MotionCounts.motion`; an interval is a row of the table.
+    """
     samples = logs.recorder.samples
     names = samples[0][1].keys()
     return {name: np.diff([0.0, *(totals[name] for _, totals in samples)]) for name in names}

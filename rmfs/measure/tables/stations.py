@@ -48,7 +48,12 @@ STATIONS = (
     Column("lines_picked", INTEGER, "lines", "Lines finished"),
     Column("orders_completed", INTEGER, "orders", "Orders completed"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored"),
-    Column("busy_s", REAL, "s", "Time spent handling units or bundles"),
+    Column(
+        "busy_s",
+        REAL,
+        "s",
+        "Time spent handling units or bundles; for other kinds, serving pods or robots",
+    ),
     Column("idle_share", REAL, "share", "1 - busy_s / duration"),
     Column("active_share", REAL, "share", "Time switched on / duration"),
     Column(
@@ -83,7 +88,7 @@ STATIONS = (
 
 
 def stations(logs: Logs) -> pd.DataFrame:
-    """Make a row per station, in the common numbering."""
+    """Make a row per station: pick stations first, then replenishment stations, then others."""
     layout = logs.layout
     number = len(layout.stations)
     place = np.array([station.waypoint for station in layout.stations], np.int64)
@@ -132,7 +137,7 @@ def stations(logs: Logs) -> pd.DataFrame:
 
 
 def busy_until(logs: Logs, station: int, at_s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the total time for which a station has been busy up to each time, in s."""
+    """Return, for each time in `at_s`, the total time a station has been busy by then, in s."""
     own = logs.busy[logs.busy["station"].to_numpy() == station]
     return covered(own["begin_s"].to_numpy(), own["end_s"].to_numpy(), at_s)
 

@@ -1,4 +1,4 @@
-"""Brings a table into the declared order and types."""
+"""Brings the columns of a table into their declared order and types."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _dtype(name: str) -> Any:
 def tidy(
     table: str, declared: Sequence[Column], columns: Mapping[str, Any] | pd.DataFrame
 ) -> pd.DataFrame:
-    """Return a frame with exactly the declared columns.
+    """Return a frame with exactly the declared columns, in their order and with their types.
 
     Columns are converted one at a time, so that making a long table takes little more memory than
     the table itself.
@@ -36,7 +36,7 @@ def tidy(
     table
         Name of the table, for errors.
     columns
-        Arrays, lists or series of the same length; a single value is repeated in all rows.
+        By name, arrays, lists or series of the same length; a single value is repeated in all rows.
 
     Raises
     ------

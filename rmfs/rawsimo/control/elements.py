@@ -1,6 +1,7 @@
-"""Conversion of the elements of a controller configuration: one class per kind of value.
+"""Conversion of the XML elements of RAWSim-O's controller configurations (.xconf).
 
-For an absent element, RAWSim-O's default is written explicitly, as that of rmfs may differ.
+There is one class per kind of value. Each converts an element to the parameter `key` of rmfs. For
+an absent element, RAWSim-O's default is written explicitly, as the default of rmfs may differ.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Number(NamedTuple):
-    """A real number, converted to the parameter `key`."""
+    """An element that contains a real number."""
 
     key: str
     default: float
@@ -27,7 +28,7 @@ class Number(NamedTuple):
 
 
 class Whole(NamedTuple):
-    """An integer."""
+    """An element that contains an integer."""
 
     key: str
     default: int
@@ -38,7 +39,7 @@ class Whole(NamedTuple):
 
 
 class Switch(NamedTuple):
-    """A truth value."""
+    """An element that contains a truth value."""
 
     key: str
     default: bool
@@ -49,36 +50,36 @@ class Switch(NamedTuple):
 
 
 class Word(NamedTuple):
-    """One of several words, each with its value in rmfs."""
+    """An element that contains one of several words, each of which stands for a value in rmfs."""
 
     key: str
     choices: Mapping[str, str] | Mapping[str, bool]
     default: str
 
     def read(self, block: Settings, tag: str) -> Any:
-        """Return the value of the element's word."""
+        """Return the value in rmfs for which the word in the element stands."""
         return block.choice(tag, self.choices, self.default)
 
 
 class Complement(NamedTuple):
-    """A probability whose complement is the parameter of rmfs."""
+    """An element that contains a probability; the parameter of rmfs is 1 minus this probability."""
 
     key: str
     default: float
 
     def read(self, block: Settings, tag: str) -> Any:
-        """Return 1 minus the element's value, rounded to fifteen digits."""
+        """Return 1 minus the value of the element, rounded to fifteen decimal places."""
         return round(1.0 - block.number(tag, self.default), 15)
 
 
 class Numbers(NamedTuple):
-    """Several numbers, in one text with commas or in one element each."""
+    """An element that contains numbers: separated by commas, or each in a child element."""
 
     key: str
     default: tuple[float, ...]
 
     def read(self, block: Settings, tag: str) -> Any:
-        """Return the values of the element."""
+        """Return the numbers in the element."""
         return block.numbers(tag, self.default)
 
 
@@ -95,16 +96,16 @@ METRICS = {
 
 @dataclass(frozen=True)
 class Rule:
-    """Conversion of a rule of RAWSim-O.
+    """Conversion of a method or criterion of RAWSim-O to its counterpart in rmfs.
 
     Attributes
     ----------
     name
-        Name of the rule in rmfs.
+        Name of the rule or criterion in rmfs.
     elements
-        Conversion of each element.
+        Conversions of the elements that are used, by tag.
     left
-        Elements that are not used, with the reason for each.
+        Reasons why the other known elements are not used, by tag.
     """
 
     name: str
@@ -113,7 +114,7 @@ class Rule:
 
 
 def translated(block: Settings, rule: Rule) -> Table:
-    """Return the table of a rule in a controllers file; note what is left out.
+    """Return the table of a rule for a controllers file, and note the elements in `rule.left`.
 
     Raises
     ------
@@ -126,5 +127,5 @@ def translated(block: Settings, rule: Rule) -> Table:
 
 
 def values_of(block: Settings, elements: Mapping[str, Element]) -> Table:
-    """Return the parameters given by the elements."""
+    """Return the parameters of rmfs, by name, as given by the elements of a block."""
     return {element.key: element.read(block, tag) for tag, element in elements.items()}

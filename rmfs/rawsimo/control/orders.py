@@ -1,4 +1,4 @@
-"""RAWSim-O's order batching and replenishment batching: POA and ROA."""
+"""Conversion of RAWSim-O's order batching (POA) and replenishment batching (ROA)."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ ROA = {
 
 
 def poa(kind: str, block: Settings) -> Table:
-    """Return our table `poa` that corresponds to an order batching method of RAWSim-O.
+    """Convert an order batching method of RAWSim-O to the table `poa` of a controllers file.
 
     Parameters
     ----------
@@ -185,5 +185,5 @@ def _criterion(block: Settings, rule: Rule) -> Table:
 
 
 def roa(kind: str, block: Settings) -> Table:
-    """Return our table `roa` that corresponds to a replenishment batching method of RAWSim-O."""
+    """Convert RAWSim-O's replenishment batching to the table `roa` of a controllers file."""
     return translated(block, ROA[kind])

@@ -1,4 +1,4 @@
-"""RAWSim-O's station activation and method management: SA and MM."""
+"""Conversion of RAWSim-O's station activation (SA) and method management (MM)."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _EXCHANGEABLE = {
 
 
 def sa(kind: str, block: Settings) -> Table:
-    """Return our table `sa` that corresponds to a station activation method of RAWSim-O."""
+    """Convert a station activation method of RAWSim-O to the table `sa` of a controllers file."""
     table = translated(block, SA[kind])
     if kind == "WorkShift":
         shifts = block.switches("Shifts") or _SHIFTS
@@ -52,14 +52,15 @@ def sa(kind: str, block: Settings) -> Table:
 
 
 def mm(kind: str, block: Settings) -> Table:
-    """Return our table `mm` that corresponds to a method management of RAWSim-O.
+    """Convert RAWSim-O's method management to the table `mm` of a controllers file.
 
     In RAWSim-O, method management exchanges PSA rules only.
 
     Raises
     ------
     InputError
-        If the block names a pod storage rule that RAWSim-O itself cannot exchange.
+        If a value is wrong, or the block names a pod storage rule that RAWSim-O itself cannot
+        install during a run.
     """
     if kind == "Random":
         exchanges = block.switch("ExchangePodStorage", default=True)

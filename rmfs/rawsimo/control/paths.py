@@ -1,4 +1,4 @@
-"""RAWSim-O's path planning: PP."""
+"""Conversion of RAWSim-O's path planning (PP)."""
 
 from __future__ import annotations
 
@@ -99,10 +99,10 @@ PP = (*_RULES, "Simple", "Dummy")
 
 
 def pp(kind: str, block: Settings) -> Table:
-    """Return our table `pp` that corresponds to a path planning method of RAWSim-O.
+    """Convert a path planning method of RAWSim-O to the table `pp` of a controllers file.
 
-    With methods that rmfs also has, a robot is granted one straight stretch of its path at a time,
-    as in RAWSim-O.
+    The methods Simple and Dummy, which rmfs lacks, are replaced by `time-windows`. With the others,
+    a robot is granted one straight stretch of its path at a time, as in RAWSim-O.
     """
     if kind in _RULES:
         return {**translated(block, _RULES[kind]), "runs_granted": 1}

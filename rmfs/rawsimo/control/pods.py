@@ -1,4 +1,4 @@
-"""RAWSim-O's item storage, pod storage and repositioning: RPS, PSA and repositioning."""
+"""Conversion of RAWSim-O's item storage (RPS), pod storage (PSA) and repositioning."""
 
 from __future__ import annotations
 
@@ -157,12 +157,12 @@ REPOSITIONING = {
 
 
 def rps(kind: str, block: Settings) -> Table:
-    """Return our table `rps` that corresponds to an item storage method of RAWSim-O."""
+    """Convert an item storage method of RAWSim-O to the table `rps` of a controllers file."""
     return translated(block, RPS[kind])
 
 
 def psa(kind: str, block: Settings) -> Table:
-    """Return our table `psa` that corresponds to a pod storage method of RAWSim-O."""
+    """Convert a pod storage method of RAWSim-O to the table `psa` of a controllers file."""
     table = translated(block, PSA[kind]) | _zones(kind, block)
     if "within_class" in table:
         table["within_class"], _, metric = table["within_class"].partition(" ")
@@ -171,7 +171,7 @@ def psa(kind: str, block: Settings) -> Table:
 
 
 def repositioning(kind: str, block: Settings) -> Table:
-    """Return our table `repositioning` that corresponds to a repositioning method of RAWSim-O."""
+    """Convert RAWSim-O's repositioning to the table `repositioning` of a controllers file."""
     return translated(block, REPOSITIONING[kind]) | _zones(kind, block)
 
 

@@ -1,4 +1,4 @@
-"""RAWSim-O's task allocation with its pod selection: TA and PPS."""
+"""Conversion of RAWSim-O's task allocation (TA), of which pod selection (PPS) is a part."""
 
 from __future__ import annotations
 
@@ -168,7 +168,10 @@ _OLD_ORDERS = (
 
 
 def ta(kind: str, block: Settings) -> Table:
-    """Return our table `ta` for a task allocation method of RAWSim-O, without its pod selection."""
+    """Convert a task allocation method of RAWSim-O to the table `ta` of a controllers file.
+
+    The pod selection within the method is converted by `pps`.
+    """
     block.leave(_OLD_ORDERS, "RAWSim-O no longer supports it and uses its default pod selection")
     table = translated(block, TA[kind])
     if table.get("period_s") == 0:
@@ -178,10 +181,10 @@ def ta(kind: str, block: Settings) -> Table:
 
 
 def pps(kind: str, block: Settings) -> Table:
-    """Return our table `pps` for the pod selection of a task allocation method of RAWSim-O.
+    """Convert a task allocation method's pod selection to the table `pps` of a controllers file.
 
-    Task allocations that choose pods themselves (Random, BruteForce) get the rule `dummy`, with
-    `late_picks` and `late_bundles` false.
+    For methods that choose pods themselves (Random, BruteForce), the table has the rule `dummy`,
+    with `late_picks` and `late_bundles` (late binding) false.
     """
     selection = block.block("PodSelectionConfig")
     if kind in ("Random", "BruteForce"):

@@ -52,7 +52,7 @@ class ImportedControllers(NamedTuple):
     Attributes
     ----------
     table
-        The table of a controllers file, not yet validated.
+        The configuration as the table of a controllers file, not yet validated.
     notes
         What was left out, and what differs in rmfs.
     """
@@ -62,12 +62,13 @@ class ImportedControllers(NamedTuple):
 
 
 def read_xconf(path: Path) -> ImportedControllers:
-    """Read a controller configuration; missing elements take RAWSim-O's defaults.
+    """Read a controller configuration; elements missing in it take RAWSim-O's defaults.
 
     Raises
     ------
     InputError
-        If the file is not a controller configuration, or a method or value is unknown.
+        If the file is not a controller configuration, or a method is unknown or has no counterpart
+        in rmfs, or a value is wrong.
     """
     notes: list[str] = []
     root = Settings(read_root(path, ROOT), path, notes)

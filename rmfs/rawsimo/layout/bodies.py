@@ -1,4 +1,4 @@
-"""Pods and robots of an .xinst file."""
+"""Pods and robots of RAWSim-O's explicit instances (.xinst)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,9 @@ def pods(
 ) -> tuple[list[Table], float]:
     """Return the pods, and the largest of their radii in m.
 
-    A pod stands at the waypoint that names it, or else at the nearest storage location of its tier.
+    A pod is put at the waypoint that names it or, if there is none, at the storage location on its
+    tier that is nearest to its coordinates. If the file contains no pods, the radius is RAWSim-O's
+    default.
     """
     nearest = _Nearest(waypoints, [bool(waypoint["storage"]) for waypoint in waypoints])
     radii: Counter[float] = Counter()
@@ -57,7 +59,11 @@ def pods(
 
 
 def robots(instance: Instance, waypoints: list[Table]) -> tuple[list[Table], list[Table]]:
-    """Return the kinds of robots, and the robots, each put at the nearest waypoint of its tier."""
+    """Return the kinds of robots, and the robots.
+
+    Robots whose parameters, such as top speed, are all equal are of one kind. Each robot is put at
+    the waypoint on its tier that is nearest to its coordinates.
+    """
     nearest = _Nearest(waypoints, [True] * len(waypoints))
     kinds: dict[tuple[float, ...], int] = {}
     found: list[Table] = []

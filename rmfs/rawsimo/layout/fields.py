@@ -44,7 +44,8 @@ class Fields:
     element
         The element; messages name its tag and `ID`.
     problems
-        Collection to which errors are added; a wrong value is then read as 0 or false.
+        Collection to which an error is added for each missing or wrong value; the value is then
+        read as 0 or false.
     """
 
     def __init__(self, element: Element, problems: Problems) -> None:
@@ -57,7 +58,7 @@ class Fields:
         return f"{self._element.tag} {self._element.get('ID', '(without ID)')}"
 
     def number(self, name: str, default: float | None = None) -> float:
-        """Return a finite number; without a default, the attribute is required."""
+        """Return the finite number in an attribute, which is required if `default` is None."""
         text = self._element.get(name)
         if text is None and default is not None:
             return default
@@ -71,7 +72,7 @@ class Fields:
         return value
 
     def whole(self, name: str, default: int | None = None) -> int:
-        """Return an integer; without a default, the attribute is required."""
+        """Return the integer in an attribute, which is required if `default` is None."""
         text = self._element.get(name)
         if text is None and default is not None:
             return default
@@ -82,7 +83,7 @@ class Fields:
             return 0
 
     def switch(self, name: str) -> bool:
-        """Return a truth value; an absent attribute means false."""
+        """Return the truth value in an attribute; if the attribute is absent, it is false."""
         text = self._element.get(name, "false")
         if text not in ("true", "false", "1", "0"):
             self._wrong(name, "true or false", text)
@@ -94,6 +95,6 @@ class Fields:
 
 
 def slashed(text: str | None, parts: int) -> list[str] | None:
-    """Split "a/b/c" into the given number of parts; None if the number of parts differs."""
+    """Return the parts of a text such as "a/b/c", or None if their number is not `parts`."""
     found = (text or "").strip().split("/")
     return found if len(found) == parts else None

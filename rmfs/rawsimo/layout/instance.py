@@ -1,4 +1,7 @@
-"""The elements of an .xinst file, accessed by kind and id, with a check for unknown ones."""
+"""Access by kind and id to the elements of RAWSim-O's explicit instances (.xinst).
+
+Unknown elements and attributes are noted.
+"""
 
 from __future__ import annotations
 
@@ -63,7 +66,7 @@ _UNNAMED = "unnamed"
 
 
 class Instance:
-    """A file that is being translated.
+    """An .xinst file that is being converted to a layout.
 
     Parameters
     ----------
@@ -88,7 +91,7 @@ class Instance:
         self._survey_meaning()
 
     def elements(self, kind: str) -> list[Element]:
-        """Return the elements of a kind in the order of the file."""
+        """Return the elements of a kind, such as `Pod`, in the order of the file."""
         return self._elements[kind]
 
     def fields(self, kind: str) -> Iterator[Fields]:
@@ -100,18 +103,18 @@ class Instance:
         return name in self._index[kind]
 
     def position(self, kind: str, name: int, where: str) -> int:
-        """Return the index of the element with the id `name` among those of its kind.
+        """Return the index of the element with the id `name` among the elements of the kind.
 
-        If there is none, an error is added and the result is 0.
+        If there is no such element, an error is added and the result is 0.
         """
         if not self.has(kind, name):
             self.problems.add(f"{where}: there is no {kind} {name}")
         return self._index[kind].get(name, 0)
 
     def waypoint(self, text: str | None, where: str) -> int:
-        """Return the index of the waypoint with the id in `text`.
+        """Return the index of the waypoint whose id is `text`.
 
-        If there is none, an error is added and the result is 0.
+        If there is no such waypoint, an error is added and the result is 0.
         """
         try:
             name = int(text or "")

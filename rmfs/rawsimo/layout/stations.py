@@ -1,4 +1,4 @@
-"""Stations and elevators of an .xinst file, with their queues."""
+"""Stations and elevators of RAWSim-O's explicit instances (.xinst), with their queues."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 def pick_stations(instance: Instance, occupants: Occupants) -> list[Table]:
     """Return the pick stations.
 
-    If a station's ItemPickTime is missing or 0, a unit holds the robot as long as it occupies the
-    station (ItemTransferTime), as in RAWSim-O.
+    A unit occupies the station for the ItemTransferTime and the robot for the ItemPickTime. If the
+    latter is missing or 0, the robot is occupied for the ItemTransferTime, as in RAWSim-O.
     """
     ranks = _ranks(instance, "OutputStation")
     stations, without = [], 0
@@ -62,7 +62,7 @@ def replenishment_stations(instance: Instance, occupants: Occupants) -> list[Tab
 
 
 def elevators(instance: Instance) -> tuple[list[Table], set[tuple[int, int]]]:
-    """Return the elevators, and all pairs of waypoints joined by an elevator."""
+    """Return the elevators, and all pairs (origin, destination) of waypoints that they join."""
     found: list[Table] = []
     pairs: set[tuple[int, int]] = set()
     for element in instance.elements("Elevator"):

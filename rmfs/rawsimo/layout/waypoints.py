@@ -1,4 +1,4 @@
-"""Tiers, waypoints and edges of an .xinst file."""
+"""Tiers, waypoints and edges of RAWSim-O's explicit instances (.xinst)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rmfs.rawsimo.layout.instance import Instance
 
 Occupants = dict[tuple[str, int], int]
-"""Number of the waypoint that names a pod or station, by kind and number of the pod or station."""
+"""Index of the waypoint that names a pod or station, by kind and index of the pod or station."""
 
 
 def tiers(instance: Instance) -> list[Table]:
@@ -27,7 +27,7 @@ def tiers(instance: Instance) -> list[Table]:
 
 
 def waypoints(instance: Instance) -> tuple[list[Table], Occupants]:
-    """Return the waypoints, still without edges, and which of them name pods and stations.
+    """Return the waypoints, still without edges, and the waypoint that names each pod or station.
 
     As in RAWSim-O, a waypoint that names a pod or station gets the coordinates of that pod or
     station, and a waypoint that names a pod is a storage location.
@@ -75,14 +75,17 @@ def _occupant(
 
 
 def add_edges(instance: Instance, waypoints: list[Table], rides: set[tuple[int, int]]) -> None:
-    """Add the edges, except those between tiers, which elevators provide.
+    """Add the edges within tiers.
+
+    Edges between tiers are left out, because the rides of elevators take their place. A remark
+    tells how many of them belong to no elevator.
 
     Parameters
     ----------
     waypoints
         As returned by `waypoints`; this function fills in their key `to`.
     rides
-        Pairs of waypoints joined by an elevator.
+        Pairs (origin, destination) of waypoints that elevators join.
     """
     across = 0
     for v, element in enumerate(instance.elements("Waypoint")):

@@ -1,4 +1,4 @@
-"""Conversion of RAWSim-O's layouts to layout files."""
+"""Conversion of RAWSim-O's layout files to those of rmfs."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ SUFFIXES = {".xinst": ".json", ".xlayo": ".toml"}
 
 
 def import_layout(path: Path, target: Path) -> list[str]:
-    """Convert a layout file of RAWSim-O; return remarks on differences.
+    """Convert a layout file of RAWSim-O to one of rmfs; return remarks on differences.
 
     Parameters
     ----------
     path
-        A .xinst, which becomes .json, or a .xlayo, which becomes .toml.
+        The file of RAWSim-O: .xinst is converted to .json, and .xlayo to .toml.
 
     Raises
     ------
     InputError
-        If the file is of another kind or invalid, or the target has another suffix or cannot be
+        If the file is of another kind or invalid, or the target has the wrong suffix or cannot be
         written.
     """
     suffix = SUFFIXES.get(path.suffix.lower())

@@ -67,13 +67,13 @@ _DEFAULT_NAME = "tiny"
 
 
 def read_xlayo_table(path: Path) -> tuple[Table, list[str]]:
-    """Read a file into a parameter table, not yet validated.
+    """Read a file into a table of layout parameters, not yet validated.
 
     Parameters missing in the file take RAWSim-O's default values.
 
     Returns
     -------
-    The table and remarks about what was left out.
+    The table, and remarks on what was left out.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def read_xlayo_table(path: Path) -> tuple[Table, list[str]]:
 
 
 def read_xlayo(path: Path) -> tuple[LayoutParameters, list[str]]:
-    """Read a file; return the parameters and remarks.
+    """Read a file; return the parameters, and remarks on what was left out.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Arrivals of orders and bundles in a settings file."""
+"""Conversion of the arrivals of orders and bundles in RAWSim-O's settings files (.xsett)."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Arrivals:
     letters
         Whether SKUs are coloured letters, and orders are words spelled with them.
     file
-        File of fixed orders.
+        Path of the file with the fixed orders and bundles; None if `mode` is not `stream`.
     """
 
     def __init__(self, block: Settings, mode: str, *, letters: bool, file: str | None) -> None:
@@ -45,7 +45,7 @@ class Arrivals:
         self._file = file
 
     def tables(self) -> Table:
-        """Return the tables `demand` and `replenishment`."""
+        """Return the tables `demand` and `replenishment` of a scenario."""
         returns = self._block.number("ReturnOrderProbability", 0.0)
         demand, replenishment = self._regular()
         if self._mode == "stream" or replenishment["mode"] == "needed":
@@ -224,7 +224,8 @@ class Arrivals:
 def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[list[float]]:
     """Convert changes (time in the cycle, whether down from then on) to down periods [start, end].
 
-    Before the first change, the state is that after the last one, as the cycle repeats.
+    In a down period, no orders (or bundles) are generated. As the cycle repeats, the state after
+    the last change also holds before the first one.
     """
     state = changes[-1][1]
     begin_s = 0.0
@@ -237,7 +238,7 @@ def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[
 
 
 def steps(weights: Sequence[tuple[float, float]]) -> dict[str, Any]:
-    """Convert the steps (start, weight) of a rate to scenario keys; none if there are no steps."""
+    """Return the steps (start, weight) of a rate as keys of a scenario; empty if there are none."""
     if not weights:
         return {}
     if weights[0][0] > 0:

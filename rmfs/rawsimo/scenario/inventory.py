@@ -1,4 +1,7 @@
-"""The inventory block of a settings file: SKUs, orders, demand and replenishment."""
+"""Conversion of the inventory block of RAWSim-O's settings files (.xsett).
+
+The block describes SKUs, initial stock, orders, demand and replenishment.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +43,7 @@ class Inventory:
         self._mode = block.choice("OrderMode", _ORDER_MODES, "Fill")
 
     def tables(self) -> Table:
-        """Return the tables of a scenario that the block defines.
+        """Return those tables of a scenario that the block defines, by name.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Conversion of a settings file's block of changes to the layout."""
+"""Conversion of the changes that RAWSim-O's settings files (.xsett) make to a layout."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _COUNTS = {
 
 
 def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
-    """Return the changes of the layout as pairs of a path of keys and a value.
+    """Return the changes to the layout that are switched on, as pairs (path of keys, value).
 
     In the block, each change consists of two elements: a switch, and a value whose name begins with
     the name of the switch.

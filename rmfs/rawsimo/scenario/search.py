@@ -1,4 +1,4 @@
-"""Locates the files that settings of RAWSim-O refer to."""
+"""Locates the files that RAWSim-O's settings files (.xsett) name."""
 
 from __future__ import annotations
 

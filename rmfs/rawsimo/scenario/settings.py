@@ -1,4 +1,7 @@
-"""Typed access to the elements of RAWSim-O's files, with notes on elements not read."""
+"""Typed access to the elements of RAWSim-O's settings files and controller configurations.
+
+Elements that are not read are noted.
+"""
 
 from __future__ import annotations
 
@@ -17,18 +20,19 @@ _T = TypeVar("_T")
 
 
 class Settings:
-    """One block of a settings file; remembers which elements have been read.
+    """The root or a block of a settings file or controller configuration.
 
-    An absent element has its default value, if there is one. A wrong value raises `InputError`.
+    It remembers which of its elements have been read. An absent element has the default value, if
+    any, that is given to the method that reads it. A wrong value raises `InputError`.
 
     Parameters
     ----------
     element
-        The block; None: it is absent, and all values are defaults.
+        The root or block; None: the block is absent, and all values are defaults.
     path
         The file, for messages.
     notes
-        Collection of notes on what is not used.
+        Collection to which notes on what is not used or differs are added.
 
     Attributes
     ----------
@@ -60,7 +64,7 @@ class Settings:
         return InputError(f"{self._path}: {tag}: {problem}")
 
     def note(self, text: str) -> None:
-        """Add a remark."""
+        """Add a note."""
         self._notes.append(text)
 
     def text(self, tag: str, default: str = "") -> str:
@@ -74,7 +78,7 @@ class Settings:
         return _kind(self._elements.get(tag))
 
     def choice(self, tag: str, choices: Mapping[str, _T], default: str) -> _T:
-        """Return `choices[word]` of the word in an element; a word not in `choices` is an error."""
+        """Return `choices[word]` for the text of an element, which must be a word in `choices`."""
         word = self.text(tag, default)
         if word not in choices:
             raise self.error(tag, f"must be one of {', '.join(choices)} (given: {word!r:.40})")
@@ -101,19 +105,22 @@ class Settings:
         return Settings(self._elements.get(tag), self._path, self._notes)
 
     def pairs(self, tag: str) -> list[tuple[float, float]]:
-        """Return a list of keys and values, in order of the keys."""
+        """Return the pairs (key, number) listed in an element, in order of the keys."""
         return sorted(
             (self._number(tag, key), self._number(tag, value)) for key, value in self._pairs(tag)
         )
 
     def switches(self, tag: str) -> list[tuple[float, bool]]:
-        """Return a list of keys with a truth value each, in order of the keys."""
+        """Return the pairs (key, truth value) listed in an element, in order of the keys."""
         return sorted(
             (self._number(tag, key), self._switch(tag, value)) for key, value in self._pairs(tag)
         )
 
     def words(self, tag: str, choices: Mapping[str, str]) -> list[tuple[float, str]]:
-        """Return a list of keys and words as pairs (key, `choices[word]`), in order of the keys."""
+        """Return the keys and words listed in an element as pairs (key, `choices[word]`).
+
+        The pairs are in order of the keys.
+        """
         found = []
         for key, word in self._pairs(tag):
             if word not in choices:
@@ -131,19 +138,19 @@ class Settings:
         return [self._number(tag, part.strip()) for part in parts]
 
     def weights(self, tag: str) -> dict[str, float]:
-        """Return the weights by word from a list of both; words with weight 0 are left out."""
+        """Return the weight of each word listed in an element, except words with weight 0."""
         numbers = {key: self._number(tag, value) for key, value in self._pairs(tag)}
         return {key: number for key, number in numbers.items() if number}
 
     def leave(self, tags: Iterable[str], reason: str) -> None:
-        """Note why elements are not used, if they are present, and count them as read."""
+        """Note why the given elements, if present, are not used; count them as read."""
         present = [tag for tag in tags if tag in self]
         self._read.update(present)
         if present:
             self.note(f"{', '.join(present)} not used: {reason}")
 
     def leave_rest(self) -> None:
-        """Note the elements that were not read."""
+        """Note which elements of the block have not been read."""
         unknown = [tag for tag in self._elements if tag not in self._read]
         if unknown:
             self.note(

@@ -32,8 +32,8 @@ def read_xgenc(path: Path) -> SkuFileContent:
     Raises
     ------
     InputError
-        One line that names the file and its first error: wrong XML, an unknown element, a SKU
-        that is unknown or listed twice, or a value that is missing or out of range.
+        If the file is missing or not a valid SKU set. The message is one line that names the
+        file and the first error found, such as an unknown element or a SKU that is listed twice.
     """
     return _Reader(path).content()
 

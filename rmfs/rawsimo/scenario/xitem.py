@@ -1,4 +1,4 @@
-"""Reader for RAWSim-O's fixed order lists (.xitem)."""
+"""Reader for RAWSim-O's order lists (.xitem), which also list bundles and SKUs."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class OrderList:
         Its SKUs; their popularities are in proportion to the units ordered, or equal if there are
         no orders.
     notes
-        Remarks on unknown elements and attributes, which were left out.
+        Remarks that tell which elements and attributes are unknown and were ignored.
     """
 
     path: Path
@@ -102,13 +102,13 @@ class OrderList:
 
 
 def read_xitem(path: Path) -> OrderList:
-    """Read a fixed order list.
+    """Read an order list.
 
     Raises
     ------
     InputError
-        If the file is not an order list, or a SKU is invalid. Orders and bundles are validated when
-        they are requested.
+        If the file is not an order list, or a SKU is invalid. Orders and bundles are validated
+        later, by `OrderList.orders` and `OrderList.bundles`.
     """
     root = read_root(path, ROOT)
     orders = tuple(_order_rows(root))

@@ -1,4 +1,4 @@
-"""Reader for RAWSim-O's scenarios (.xsett).
+"""Reader for RAWSim-O's settings files (.xsett), which define scenarios.
 
 Every element is mapped to a parameter of rmfs, or listed in a note with the reason why it is not.
 """
@@ -49,7 +49,7 @@ class ImportedSettings(NamedTuple):
     notes
         What was left out, and what differs in rmfs.
     layout
-        Changes of the layout, as overrides: paths that begin with `layout`, and values.
+        Overrides of the layout: pairs of a key path, which begins with `layout`, and a value.
     """
 
     table: Table

@@ -59,10 +59,10 @@ def convert(
     Parameters
     ----------
     layout
-        A name of `LAYOUTS`.
+        A key of `LAYOUTS`, such as "jd".
     paths
-        The files of the data set, in the order of `Layout.files`; any further files have the same
-        columns as the last of these.
+        The files of the data set, in the order of `Layout.files`. Further files with the same
+        columns as the last of these may follow; those of layout olist are ignored.
     out
         The .csv file to write.
     begin, end
@@ -77,7 +77,7 @@ def convert(
     InputError
         If the layout is unknown; a file is missing, cannot be read, lacks a column or has a wrong
         field; `out` does not end in .csv or cannot be written; dates are given for a layout without
-        dates; no order is left; or there are more than `MOST_LINES` lines.
+        dates; no order is left; or there are more than `MOST_LINES` order lines.
     """
     if layout not in LAYOUTS:
         raise InputError(f"layout {layout!r:.40} is unknown; valid: {', '.join(LAYOUTS)}")

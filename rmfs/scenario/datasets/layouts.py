@@ -105,10 +105,10 @@ def jd(paths: Sequence[Path], orders: Orders) -> None:
 
 
 def olist(paths: Sequence[Path], orders: Orders) -> None:
-    """Read orders and their items, one unit each; omit cancelled and unavailable orders.
+    """Read orders and their items; cancelled and unavailable orders are omitted.
 
-    An order is due at the earliest `shipping_limit_date` of its items; dates before the order time
-    are ignored.
+    Every item is one unit. An order is due at the earliest `shipping_limit_date` of its items;
+    dates before the order time are ignored.
     """
     columns = ("order_id", "order_status", "order_purchase_timestamp")
     for row in rows(paths[0], columns):

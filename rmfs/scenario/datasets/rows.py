@@ -67,7 +67,12 @@ class Row:
         return number
 
     def moment(self, column: str, *further: str) -> datetime:
-        """Return a time without time zone, in ISO 8601 or one of the given formats of `strptime`.
+        """Return a field that is a time without time zone, in ISO 8601 or a format in `further`.
+
+        Parameters
+        ----------
+        further
+            Formats as for `strptime`.
 
         Raises
         ------
@@ -103,7 +108,8 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
     Raises
     ------
     InputError
-        If the file cannot be read, or a column or a row is wrong; the message names file and line.
+        If the file cannot be read, or a column or a row is wrong. The message names the file and,
+        for a column or a row, the line.
     """
     reader = None
     try:

@@ -1,4 +1,4 @@
-"""Common base for creating the intakes of orders and bundles."""
+"""Base class of the classes that create the intakes of orders and of bundles."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ T = TypeVar("T")
 
 
 class Assembly(ABC, Generic[T]):
-    """Creates an intake of regular arrivals, which pause in down periods, and of batches.
+    """Creates an intake that consists of batches and of regular arrivals, that is, all others.
 
     Parameters
     ----------

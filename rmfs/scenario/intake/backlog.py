@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Rest:
-    """Keeps a process of an intake blocked after a failed attempt or in a down period.
+    """Blocks a process of an intake for a while after a failed draw, and in down periods.
 
     Attributes
     ----------
@@ -72,11 +72,15 @@ class BacklogOrders:
 
     @property
     def next_us(self) -> int:
-        """Time at which a failed attempt may be repeated, or a down period ends."""
+        """End of the current pause (after a failed draw, or in a down period), or `NEVER_US`."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> OrderArrival | None:
-        """Return an order; None if the backlog is full or paused, or stock cannot serve one."""
+        """Return an order, or None.
+
+        The result is None if the backlog is full or paused, or if stock cannot serve the order
+        drawn.
+        """
         # called in any case, since it has to observe every change of stock
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
         if not self._rest.ends(now_us) or not wanted:
@@ -119,11 +123,15 @@ class BacklogBundles:
 
     @property
     def next_us(self) -> int:
-        """Time at which a failed attempt may be repeated, or a down period ends."""
+        """End of the current pause (after a failed draw, or in a down period), or `NEVER_US`."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
-        """Return a bundle; None if the backlog is full or paused, or the load would be too high."""
+        """Return a bundle, or None.
+
+        The result is None if the backlog is full or paused, or if the bundle drawn would exceed
+        the load limit.
+        """
         load = state.load
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)
         if not self._rest.ends(now_us) or not wanted:

@@ -1,4 +1,4 @@
-"""Batches: simultaneous arrivals at given times of a cycle."""
+"""Batches of orders or bundles; each batch arrives all at once, at a given time of a cycle."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class Batch(NamedTuple):
-    """A batch.
+    """Orders, or bundles, that arrive all at once, at the same time of every cycle.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Batch(NamedTuple):
 
 
 def add(time_s: float, number: int) -> Batch:
-    """Return a batch of a given number of arrivals, whatever the state."""
+    """Return a batch whose number of arrivals does not depend on the state."""
     return Batch(time_s, partial(_fewer_than, number))
 
 
@@ -76,7 +76,7 @@ class Batches(Generic[T]):
         self._come = 0
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next order or bundle of a due batch; None if all due batches have ended."""
+        """Return the next arrival of the batches whose time has come; None if there are no more."""
         while self.next_us <= now_us:
             if self._lacks(state, self._come):
                 thing = self._make(self._ordinal, now_us, state)

@@ -1,4 +1,4 @@
-"""The intake of bundles."""
+"""The intake of bundles: the processes that generate the bundles of a run."""
 
 from __future__ import annotations
 

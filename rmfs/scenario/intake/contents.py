@@ -1,4 +1,4 @@
-"""Contents of the orders of a scenario, for all modes of arrival."""
+"""Contents of the orders of a scenario, for all kinds of demand (`demand.mode`)."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ _UNLIMITED = 2**62
 def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...]) -> Contents:
     """Return the function that draws the contents of the k-th order.
 
-    Orders depend on stock only if the demand is a constant backlog. Otherwise they are the same
-    whatever happens in a run. Orders that are words (`WordOrders`) never depend on stock.
+    The contents depend on stock if the demand is a constant backlog, unless the orders are words
+    (`WordOrders`). In all other cases they are the same whatever happens in a run.
 
     Parameters
     ----------
@@ -49,7 +49,8 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     Raises
     ------
     InputError
-        If an order may need more lines than there are SKUs with a popularity above zero.
+        If an order may have more lines than there are SKUs; with demand other than a constant
+        backlog, only SKUs with a popularity above zero count.
     """
     if isinstance(scenario.orders, WordOrders):
         assert isinstance(scenario.skus, LetterSkus)

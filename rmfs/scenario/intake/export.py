@@ -1,4 +1,4 @@
-"""Export of streams that do not depend on a run."""
+"""Export of streams of orders or bundles that do not depend on what happens in a run."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 
 class ExportedStream(NamedTuple):
-    """A stream that was exported.
+    """A stream of orders or bundles that was written to a file.
 
     Attributes
     ----------
     path
         The file.
     digest
-        SHA-256 of its content (`rmfs.scenario.streams.digest`).
+        SHA-256 of the stream, whatever the format of the file (`rmfs.scenario.streams.digest`).
     number
         Number of orders, or bundles.
     """
@@ -66,7 +66,7 @@ def export_stream(
     path
         File that ends in .csv or .parquet.
     site
-        The warehouse, for rates per station.
+        The properties of the warehouse on which arrivals depend.
     seed
         The run's seed.
 
@@ -100,7 +100,7 @@ def export_stream(
 def order_stream_of(scenario: Scenario, skus: SkuSet, seed: int) -> OrderStream:
     """Return all orders of a scenario; they must not depend on what happens in a run.
 
-    If order rates are given per pick station, the orders are those for a single pick station.
+    If rates or batches are given per pick station, the orders are those for a single pick station.
     """
     recorder = StreamRecorder()
     end_us = first_us(scenario.warmup_s + scenario.duration_s)

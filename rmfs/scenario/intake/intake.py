@@ -1,4 +1,4 @@
-"""An intake: several processes that generate orders or bundles."""
+"""An intake: one or more processes that generate all orders, or all bundles, of a run."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ class OrderArrival(NamedTuple):
     due_us
         Due time.
     redraws
-        Number of draws rejected because earlier orders left too few units of the SKU.
+        Number of draws of a SKU that were rejected because earlier orders left too few units of it.
     in_file
-        Its position among the orders of a file, or -1.
+        Position of the order in the file from which it comes; -1 if it comes from no file.
     priority
-        Index of its class; -1 if there are no classes.
+        Index of the order's class; -1 unless `orders.due.mode = "classes"`.
     """
 
     time_us: int
@@ -44,7 +44,7 @@ class OrderArrival(NamedTuple):
 
     @classmethod
     def of(cls, content: OrderContent, time_us: int) -> OrderArrival:
-        """Return the arrival of a drawn order at a time."""
+        """Return the arrival, at a given time, of an order with the given content."""
         due_us = time_us + nearest_us(content.due_offset_s)
         skus, units, priority = content.skus, content.units, content.priority
         return cls(time_us, skus, units, due_us, content.redraws, priority=priority)
@@ -58,7 +58,7 @@ class OrderArrival(NamedTuple):
 class BundleArrival(NamedTuple):
     """A bundle that arrives: units of one SKU, and the space units they take.
 
-    `in_file` is its position among the bundles of a file, or -1.
+    `in_file` is the position of the bundle in the file from which it comes; -1: from no file.
     """
 
     time_us: int
@@ -88,7 +88,7 @@ class Process(Protocol[T_co]):
         """Time by which `draw` must be called again; `NEVER_US`: only after a change of state."""
 
     def draw(self, now_us: int, state: State) -> T_co | None:
-        """Return the next arrival that is due, or None if there is none."""
+        """Return the next arrival whose time has come, or None if there is none."""
 
 
 class Intake(Generic[T]):
@@ -120,7 +120,7 @@ class Intake(Generic[T]):
 
     @property
     def next_us(self) -> int:
-        """Time by which `due` must be called again; valid after all that is due has been taken."""
+        """Time by which `due` must be called again; valid once `due` has yielded everything."""
         if len(self._processes) == 1:  # the usual case, and this is asked after every change
             return self._processes[0].next_us
         return min(process.next_us for process in self._processes)
@@ -138,7 +138,9 @@ class Intake(Generic[T]):
                 process.redraw(now_us)
 
     def due(self, now_us: int, state: State) -> Iterator[T]:
-        """Yield the arrivals due now; the caller adds each to the state before requesting the next.
+        """Yield the arrivals whose time has come.
+
+        The caller adds each arrival to the state before requesting the next.
 
         To be called at time zero, at `next_us`, and after every change of backlog or stock.
 

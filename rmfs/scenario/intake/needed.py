@@ -1,4 +1,4 @@
-"""Replenishment of the SKUs that waiting orders lack."""
+"""Replenishment of the SKUs of which too few units are left for further orders."""
 
 from __future__ import annotations
 
@@ -22,9 +22,10 @@ class NeededBundles:
     """Generates bundles of SKUs that run short (a process of an intake).
 
     What is left of a SKU for further orders: its stored units, plus those in bundles that wait or
-    are on their way, minus those that orders still need. The SKU is short if fewer units than the
-    reorder point are left. With a reorder point of 0, only what waiting orders lack is replenished.
-    The SKU with the fewest units left comes first; ties go to the lowest index.
+    are on their way, minus those that orders still need. The SKU is short if fewer units are left
+    than the reorder point, `reorder_below_units`. With a reorder point of 0, it is short only if
+    orders need more units than are stored, waiting or on their way. The SKU with the fewest units
+    left comes first; ties go to the lowest index.
 
     Parameters
     ----------
@@ -48,14 +49,14 @@ class NeededBundles:
 
     @property
     def next_us(self) -> int:
-        """Time at which a failed attempt may be repeated, or a down period ends."""
+        """End of the current pause (at the load limit, or in a down period), or `NEVER_US`."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
         """Return a bundle of the SKU with the fewest units left; None if this SKU is not short.
 
-        The result is also None in a down period, during the pause after a bundle that would have
-        exceeded the load limit, and while the maximum number of bundles waits.
+        The result is also None in a down period, while the maximum number of bundles is waiting, if
+        the bundle would exceed the load limit, and during the pause after that.
         """
         if not self._rest.ends(now_us) or state.waiting_bundles >= self._config.bundles:
             return None

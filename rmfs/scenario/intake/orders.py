@@ -1,4 +1,4 @@
-"""The intake of orders."""
+"""The intake of orders: the processes that generate the orders of a run."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def order_intake(
     Raises
     ------
     InputError
-        If a file is invalid, an order may need more lines than there are SKUs, or a rate is too
+        If a file is invalid, an order may have more lines than there are SKUs, or a rate is too
         high.
     """
     orders = _Orders(scenario, skus, site, seed, scenario.demand.down)

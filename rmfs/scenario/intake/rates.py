@@ -33,10 +33,10 @@ class Rate(Protocol):
     peak_per_h: float
 
     def per_h(self, time_us: int) -> float:
-        """Return the rate at a time in us."""
+        """Return the rate at the time `time_us`."""
 
     def redraw(self, now_us: int) -> None:
-        """Redraw all random changes of the rate after a time."""
+        """Redraw the random changes of the rate that occur after `now_us`."""
 
 
 def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: int) -> Rate:

@@ -39,7 +39,7 @@ class State(Protocol):
 
     @property
     def waiting_bundles(self) -> int:
-        """Number of bundles not yet assigned to a station and a pod."""
+        """Number of bundles that lack a station, a pod, or both."""
 
     @property
     def stored_space(self) -> float:
@@ -47,11 +47,11 @@ class State(Protocol):
 
     @property
     def load(self) -> float:
-        """Space units taken by the units that are stored, on their way into pods, or waiting."""
+        """Space units taken by all stored units and by all bundles that are not stored yet."""
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:
-        """Stored units of each SKU minus those that orders need, shape (K,); may be negative."""
+        """Stored units per SKU minus those that orders still need, shape (K,); may be negative."""
 
     @property
     def incoming(self) -> NDArray[np.int64]:
@@ -59,8 +59,8 @@ class State(Protocol):
 
     @property
     def active_pick_share(self) -> float:
-        """Share of the pick stations that are active; if none is, one counts as active."""
+        """Active pick stations as a share of all; if none is active, one is counted."""
 
     @property
     def active_replenishment_share(self) -> float:
-        """Share of the replenishment stations that are active; if none is, one counts as active."""
+        """Active replenishment stations as a share of all; if none is active, one is counted."""

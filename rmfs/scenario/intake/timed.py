@@ -1,4 +1,4 @@
-"""Arrivals at times fixed in advance."""
+"""Arrivals at times that do not depend on the state of a run: drawn, or read from a file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ class Timed(Generic[T]):
         Creates the arrival for an accepted candidate.
     share
         Function that returns the share of active stations. A candidate is accepted if this share
-        exceeds its `needed_share`. None: the rate is not tied to stations; all are accepted.
+        exceeds its `needed_share`. None: the rate is not tied to stations, and all candidates are
+        accepted.
     """
 
     def __init__(
@@ -68,7 +69,7 @@ class Timed(Generic[T]):
         return NEVER_US if self._next is None else self._next.time_us
 
     def draw(self, now_us: int, state: State) -> T | None:
-        """Return the next arrival that is due; None if there is none."""
+        """Return the next arrival whose time has come; None if there is none."""
         while (candidate := self._next) is not None and candidate.time_us <= now_us:
             self._next = next(self._candidates, None)
             if self._share is None or candidate.needed_share < self._share(state):
@@ -77,7 +78,7 @@ class Timed(Generic[T]):
 
 
 def at_zero(number: int) -> Iterator[Candidate]:
-    """Yield a number of candidates at time zero."""
+    """Yield `number` candidates, all at time zero."""
     return map(_at_zero, iter(range(number)))
 
 

@@ -1,4 +1,4 @@
-"""What happens at given times of a cycle, usually the day: down periods and batches."""
+"""What happens at given times of a cycle, usually a day: down periods and batches."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ class DownPeriods(Block):
     """Periods in which nothing but batches arrives.
 
     A backlog is not topped up, a Poisson rate is zero, and a stream from a file holds back its
-    arrivals until the period ends.
+    arrivals until the period ends. At time zero, the initial orders and bundles of Poisson arrivals
+    (`initial_orders`, `initial_bundles`) are generated even in a down period.
     """
 
     cycle_s: Cycle = DAY_S
@@ -90,7 +91,7 @@ class _Batches(Block):
 
 
 class OrderBatches(_Batches):
-    """Orders that arrive simultaneously, in addition to all others."""
+    """Batches of orders, in addition to all other orders; each batch arrives all at once."""
 
     fill_to: Numbers = Field(
         (),
@@ -101,7 +102,7 @@ class OrderBatches(_Batches):
 
 
 class BundleBatches(_Batches):
-    """Bundles that arrive simultaneously, in addition to all others."""
+    """Batches of bundles, in addition to all other bundles; each batch arrives all at once."""
 
     fill_to: Levels = Field(
         (),

@@ -23,9 +23,10 @@ class _Demand(Block):
 
 
 class BacklogDemand(_Demand):
-    """Keeps a constant number of orders waiting; only SKUs in stock are ordered.
+    """Keeps a constant number of orders waiting, except during pauses and down periods.
 
-    Stock does not limit orders that are words (`WordOrders`).
+    Orders ask only for units that are in stock and not needed by earlier orders. Words
+    (`WordOrders`) are drawn whatever is in stock.
     """
 
     mode: Literal["backlog"] = Field("backlog", description="a constant number of orders waits")
@@ -48,7 +49,10 @@ class BacklogDemand(_Demand):
 
 
 class PoissonDemand(_Demand):
-    """Orders arrive at random times, whatever is in stock; orders that stock cannot serve wait."""
+    """Orders arrive at random times, whatever is in stock.
+
+    By default, orders that stock cannot serve wait (see `Shortage`).
+    """
 
     mode: Literal["poisson"] = Field("poisson", description="orders arrive at random times")
     orders_per_h: Positive = Field(
@@ -61,7 +65,7 @@ class PoissonDemand(_Demand):
 
 
 class StreamDemand(_Demand):
-    """Orders come from a file; those that stock cannot serve wait."""
+    """Orders come from a file; by default, those that stock cannot serve wait (see `Shortage`)."""
 
     mode: Literal["stream"] = Field("stream", description="orders come from a file")
     file: StreamFile = Field(

@@ -26,7 +26,7 @@ class Breakdowns(_Repeated):
 
 
 class SlowRobots(_Repeated):
-    """A robot drives more slowly for a while; its speed changes only while it stands still."""
+    """A robot drives more slowly for a period that begins and ends while it stands still."""
 
     speed_share: float = Field(
         0.5, gt=0, lt=1, description="speed of a slow robot, as a share of its top speed"
@@ -34,11 +34,14 @@ class SlowRobots(_Repeated):
 
 
 class Closures(_Repeated):
-    """An aisle waypoint is closed for a while; this cuts off no storage location or station."""
+    """An aisle waypoint is closed for a while.
+
+    Waypoints whose closure would cut off a storage location or station are never chosen.
+    """
 
 
 class ChargerFailures(_Repeated):
-    """A charger fails for a while; the robot there waits or is called away."""
+    """A charger fails for a while; a robot there waits unless the CA controller sends it away."""
 
 
 class LateMotions(Block):
@@ -71,7 +74,12 @@ Outages = Annotated[tuple[Outage, ...], pydantic.Strict(strict=False)]
 
 
 class Disturbances(Block):
-    """Disturbances of a run; each kind draws its own random times from the run's seed."""
+    """Disturbances of a run.
+
+    Elevators are out of service at the times given in `elevators_out`. Every other kind of
+    disturbance occurs at random and has its own stream of random numbers, derived from the run's
+    seed.
+    """
 
     breakdowns: Breakdowns | None = Field(None, description="robots that stop; default: none")
     slow: SlowRobots | None = Field(None, description="robots that are slow; default: none")

@@ -78,7 +78,7 @@ class Inductive(Block):
 
 
 class Energy(Block):
-    """Masses, resistances and powers; see `rmfs/traffic/src/energy.rs` for the equations."""
+    """Parameters of the energy use of robots; see docs/energy.md for the equations."""
 
     preset: Literal["standard", "kiva-like", "light"] = Field(
         "standard", description="set of values for keys that are not given (docs/energy.md)"
@@ -111,7 +111,7 @@ class Energy(Block):
         0.5, description="share of the power drawn that does lifting work"
     )
     standby_w: NotNegative = Field(
-        30.0, description="power of the electronics without a pod, W, drawn at all times"
+        30.0, description="power of the electronics while the robot carries no pod, W"
     )
     standby_loaded_w: NotNegative = Field(
         40.0, description="power of the electronics with a pod, W"

@@ -14,7 +14,11 @@ from rmfs.scenario.quantities import Block
 
 
 class Orders(Block):
-    """Orders of one or more lines, each for a SKU drawn by popularity or affinity."""
+    """Orders of one or more lines.
+
+    The SKU of a line is drawn by popularity or, from the second line on, by affinity to the SKU of
+    the line before (see `Affinity`).
+    """
 
     content: Literal["skus"] = Field("skus", description="each line is drawn from all SKUs")
     lines: NormalOrListed = Field(

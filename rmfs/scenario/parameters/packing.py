@@ -32,9 +32,10 @@ class ToteTravel(Block):
 
 
 class Packing(Block):
-    """A put wall, where the parts of split orders are brought together, and packers.
+    """Packers, and a put wall where the parts of split orders are brought together.
 
-    See docs/packing.md. With the default values nothing takes time and capacity is unlimited.
+    See docs/packing.md. With the default values, transport and packing take no time, and all
+    capacities are unlimited.
     """
 
     slots: Count | None = Field(None, description="slots of the put wall; default: unlimited")

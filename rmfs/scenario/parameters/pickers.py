@@ -1,4 +1,4 @@
-"""Pickers at the pick stations; every unit takes the same time unless a scenario asks for them."""
+"""Pickers at the pick stations; without them, every unit takes the time given in the layout."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class ConstantTime(Block):
 
 
 class GammaTime(Block):
-    """Gamma distribution, with the mean that the layout gives for the station."""
+    """Gamma distribution; its mean is the time of a unit that the layout gives for the station."""
 
     distribution: Literal["gamma"] = "gamma"
     variation: Variation = Field(
@@ -39,7 +39,7 @@ class GammaTime(Block):
 
 
 class LognormalTime(Block):
-    """Lognormal distribution, with the mean that the layout gives for the station."""
+    """Lognormal distribution; its mean is the time that the layout gives for the station."""
 
     distribution: Literal["lognormal"] = "lognormal"
     variation: Variation = Field(
@@ -66,7 +66,10 @@ UnitTime = Annotated[
 
 
 class Learning(Block):
-    """Pickers get faster with each unit: Wright's curve with De Jong's incompressible part."""
+    """Pickers get faster with each unit, by the learning curve of De Jong.
+
+    The share `incompressible` of the time never gets shorter; if it is 0, the curve is Wright's.
+    """
 
     rate: Annotated[float, Field(ge=0.5, le=1)] = Field(
         0.9,
@@ -164,7 +167,10 @@ class Errors(Block):
 
 
 class Roster(Block):
-    """The shifts: each has its own pickers, who return in every cycle."""
+    """Shifts and breaks in a cycle, usually a day.
+
+    Each shift has its own pickers, the same ones in every cycle.
+    """
 
     cycle_s: Cycle = DAY_S
     shifts_s: Annotated[Shifts, Field(min_length=1, max_length=100)] = Field(

@@ -30,7 +30,10 @@ class ConstantRate(Block):
 
 
 class Steps(Block):
-    """A rate that changes in steps, the same in every cycle; its mean is the given rate."""
+    """A rate that changes in steps, which are repeated in every cycle.
+
+    Its mean over a cycle is `orders_per_h` or `bundles_per_h`.
+    """
 
     kind: Literal["steps"] = "steps"
     cycle_s: Cycle = DAY_S
@@ -75,10 +78,10 @@ class BundleSteps(Steps):
 
 
 class HighLowRate(Block):
-    """A rate that alternates between low and high periods, starting with a low one.
+    """A rate that switches between a low and a high value, starting with the low one.
 
-    The lengths of the periods are exponentially distributed. Orders and bundles with the same
-    switching rates share their high periods.
+    The lengths of low and high periods are exponentially distributed. If orders and bundles have
+    the same values of `low_to_high_per_h` and `high_to_low_per_h`, their high periods coincide.
     """
 
     kind: Literal["high-low"] = "high-low"

@@ -29,10 +29,10 @@ class _Drawn(_Replenishment):
 
 
 class BacklogReplenishment(_Drawn):
-    """Keeps a constant number of bundles waiting.
+    """Keeps a constant number of bundles waiting, except during pauses and down periods.
 
-    The load is the space of stored units, of bundles on their way to pods and of waiting bundles,
-    as a share of the pods' capacity.
+    Pauses depend on the load: the space taken by stored units, by bundles on their way to pods and
+    by waiting bundles, as a share of the pods' capacity.
     """
 
     mode: Literal["backlog"] = Field("backlog", description="a constant number of bundles waits")
@@ -57,7 +57,7 @@ class BacklogReplenishment(_Drawn):
 
 
 class PoissonReplenishment(_Drawn):
-    """Bundles arrive at random times; those that find no room wait."""
+    """Bundles arrive at random times; a bundle waits if no pod has room for it."""
 
     mode: Literal["poisson"] = Field("poisson", description="bundles arrive at random times")
     bundles_per_h: Positive = Field(
@@ -76,9 +76,7 @@ class NeededReplenishment(_Replenishment):
     minus those that orders still need.
     """
 
-    mode: Literal["needed"] = Field(
-        "needed", description="bundles of SKUs that waiting orders lack"
-    )
+    mode: Literal["needed"] = Field("needed", description="bundles of SKUs that run short")
     reorder_below_units: Natural = Field(
         0, description="a SKU is short when fewer than this many units are left for further orders"
     )
@@ -94,7 +92,7 @@ class NeededReplenishment(_Replenishment):
 
 
 class StreamReplenishment(_Replenishment):
-    """Bundles come from a file; those that find no room wait."""
+    """Bundles come from a file; a bundle waits if no pod has room for it."""
 
     mode: Literal["stream"] = Field("stream", description="bundles come from a file")
     file: StreamFile = Field(

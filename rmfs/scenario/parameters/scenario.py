@@ -32,7 +32,7 @@ class Stock(Block):
 
 
 class Scenario(Block):
-    """All inputs of a run except layout, controllers and seed: SKUs, stock, demand and so on."""
+    """SKUs, stock, demand and so on: all inputs of a run except layout, controllers and seed."""
 
     format: Literal["rmfs-scenario/1"] = Field(description="version of this format")
     name: str = Field(min_length=1, description="name shown in results")

@@ -10,7 +10,10 @@ from rmfs.scenario.quantities import Block, Positive
 
 
 class Shortage(Block):
-    """What happens to an order that is not yet at a station and that stock cannot serve."""
+    """What happens to an order that stock cannot serve.
+
+    Orders that are split, assigned to a station or in a station's pool are not changed.
+    """
 
     policy: Literal["wait", "partial", "cancel"] = Field(
         "wait",

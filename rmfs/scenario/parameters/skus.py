@@ -1,4 +1,4 @@
-"""Where the SKUs come from: drawn, from a file, or the letters of words."""
+"""Where the SKUs come from: random distributions, a file, or the letters of a list of words."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rmfs.scenario.distributions import Constant, Gamma, Popularity, Space, Unif
 from rmfs.scenario.parameters.files import SkuSetFile, WordFile
 from rmfs.scenario.quantities import Block, Count, Natural, NotNegative, Positive, Share
 
-OWN_SEED = "seed of the SKUs, not of the run: runs with different seeds share their SKUs"
+OWN_SEED = "seed of the SKUs, whatever the run's seed: all runs of a scenario share their SKUs"
 
 
 class _Sizes(Block):
@@ -26,10 +26,11 @@ class _Sizes(Block):
 
 
 class GeneratedAffinity(Block):
-    """Pairs of SKUs that are ordered together.
+    """Weights of pairs of SKUs: they determine which SKUs tend to be ordered together.
 
-    Each SKU is a random point in the unit square; the weight of a pair is sqrt(2) minus the
-    distance between its points.
+    Each SKU is a random point in the unit square. `pairs` pairs are drawn at random; the weight of
+    a drawn pair is sqrt(2) minus the distance between its points. All other pairs have the weight
+    `default_weight`.
     """
 
     share: Share = Field(
@@ -45,8 +46,9 @@ class GeneratedAffinity(Block):
 class GeneratedSkus(_Sizes):
     """SKUs drawn from distributions.
 
-    They have a seed of their own, which is part of the scenario: runs with different seeds share
-    their SKUs, as they would with a SKU file, and differ in stock and demand.
+    The seed of the SKUs is part of the scenario and independent of the seed of the run. All runs of
+    a scenario therefore have the same SKUs, as they would with a SKU file, whereas stock and demand
+    depend on the seed of the run.
     """
 
     count: Count = Field(1000, description="number of SKUs")
@@ -83,10 +85,10 @@ class SkuFile(_Sizes):
 
 
 class LetterSkus(_Sizes):
-    """The letters of a list of words, each in several colours (Alphabet Soup).
+    """Letters in several colours as SKUs, as in the simulator Alphabet Soup.
 
-    A SKU is a letter in one colour; the words and the weights of the colours determine how often
-    it is ordered.
+    The letters are those of a list of words, and a SKU is a letter in one colour. How often it is
+    ordered depends on the words and on the weights of the colours.
     """
 
     words: WordFile = Field(

@@ -19,16 +19,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Affinity:
-    """Weights of pairs of SKUs: a line may be drawn by affinity to the previous line.
+    """Weights of pairs of SKUs, for lines whose SKU is drawn by affinity to the line before.
+
+    The probability of a SKU is then in proportion to the weight of the pair (SKU of the line
+    before, this SKU).
 
     Attributes
     ----------
     first, second
-        The pairs with a weight of their own, as SKU indices, shape (n,) each. A pair counts in the
-        given direction (previous line, next line) only; if an .xgenc file gives only one direction
-        of a pair, the opposite one is added with the same weight.
+        The pairs with a weight of their own, as SKU indices, shape (n,) each. `first` is the SKU of
+        the line before, `second` that of the line itself; the opposite direction is another pair.
+        If an .xgenc file (RAWSim-O) gives only one direction, the opposite one is added with the
+        same weight.
     weight
-        Weight of each pair, shape (n,).
+        Weight of each of these pairs, shape (n,).
     default_weight
         Weight of all other pairs.
     share
@@ -46,10 +50,11 @@ class Affinity:
             array.setflags(write=False)
 
     def samplers(self, skus: int) -> Callable[[int], Categorical | None]:
-        """Return a function from the SKU of a line to the sampler of the SKU of the next line.
+        """Return a function that returns, for the SKU of a line, a sampler of the next line's SKU.
 
-        A sampler takes memory in proportion to the number of SKUs, so only recent samplers are
-        cached. The function returns None if no SKU has a positive affinity to the given one.
+        The function returns None for a SKU if all pairs that begin with it have a weight of 0. A
+        sampler takes memory in proportion to `skus`, the number of SKUs, so only recent samplers
+        are cached.
         """
         order = np.argsort(self.first, kind="stable")
         starts = np.searchsorted(self.first[order], np.arange(skus + 1))
@@ -64,7 +69,7 @@ class Affinity:
         return sampler
 
     def digest(self) -> str:
-        """Return the SHA-256 of all pairs and parameters."""
+        """Return the SHA-256 of all attributes."""
         hashed = hashlib.sha256(f"{self.default_weight!r} {self.share!r}".encode())
         for array in (self.first, self.second, self.weight):
             hashed.update(array.astype(array.dtype.newbyteorder("<")).tobytes())

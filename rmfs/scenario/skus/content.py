@@ -14,22 +14,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class SkuFileContent:
-    """K SKUs in the order of the file; None for missing columns.
+    """K SKUs in the order of the file.
 
     Attributes
     ----------
     ids
         Number of each SKU, shape (K,).
     popularity
-        Relative weight with which each is ordered, shape (K,).
+        Relative weight with which each SKU is ordered, shape (K,).
     space_per_unit
-        Space units, shape (K,).
+        Space units of one unit of each SKU, shape (K,); None if missing in the file.
     bundle_units
-        Units per bundle, shape (K,).
+        Units per bundle of each SKU, shape (K,); None if missing in the file.
     affinity
-        Weights of pairs; None if the file lists no pairs and the share of affinity is 0.
+        Weights of pairs of SKUs; None if the file specifies no affinity.
     names
-        Names of the SKUs, or empty.
+        Names of the SKUs; empty if they have none.
     """
 
     ids: NDArray[np.int64]

@@ -26,17 +26,18 @@ MOST_UNITS = 1_000_000
 
 
 def read_sku_table(path: Path) -> SkuFileContent:
-    """Read a SKU table: `sku` and, if present, the other `COLUMNS`.
+    """Read a SKU table: the column `sku` and, if present, the other `COLUMNS`.
 
-    If all SKUs are whole numbers, these are their ids; otherwise all SKUs are numbered from 0 and
-    keep their texts as names. Without `popularity`, all are equally popular. A file of orders (with
-    columns `order` and `quantity`) is also accepted: the popularity of a SKU is then its number of
-    order lines.
+    If all entries of `sku` are whole numbers, they are the ids of the SKUs; otherwise the SKUs are
+    numbered from 0, and the entries become their names. Without a column `popularity`, all SKUs are
+    equally popular. A file of orders (with columns `order` and `quantity`) is also accepted: the
+    popularity of a SKU is then its number of order lines.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or a field is wrong; the message names the line.
+        If the file cannot be read or its contents are invalid; for an invalid field, the message
+        names the line.
     """
     rows = _rows(path)
     head = next(rows, (1, []))[1]

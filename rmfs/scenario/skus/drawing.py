@@ -29,7 +29,7 @@ def draw_sku_set(config: GeneratedSkus, seed: int) -> SkuSet:
     Parameters
     ----------
     seed
-        Seed of the SKUs, not of the run (`config.seed` in a scenario).
+        Seed of the SKUs (`config.seed` in a scenario), not of the run.
     """
     affinity = config.affinity
     uniform = generator(seed, Stream.SKUS, _POPULARITY).random(config.count)
@@ -48,24 +48,25 @@ def draw_space(distribution: Space, seed: int, count: int) -> NDArray[np.float64
 
 
 def draw_bundle_units(distribution: Counts, seed: int, count: int) -> NDArray[np.int64]:
-    """Draw the units in a bundle of each SKU, shape (count,)."""
+    """Draw the number of units in a bundle of each SKU, shape (count,)."""
     draw = distribution.sampler()
     uniform = generator(seed, Stream.SKUS, _BUNDLE_UNITS).random(count)
     return np.array([draw(u) for u in uniform.tolist()], dtype=np.int64)
 
 
 def draw_affinity(config: GeneratedAffinity, seed: int, count: int) -> Affinity:
-    """Draw pairs of SKUs; the weight of a pair is sqrt(2) minus the distance of its SKUs.
+    """Draw pairs of SKUs, with weights that count in both directions.
 
-    Each SKU is a random point in the unit square, so that two SKUs that are often ordered with a
-    third are often ordered with each other. A weight counts in both directions.
+    Each SKU is a random point in the unit square, and the weight of a pair is sqrt(2) minus the
+    distance between its points. Because two points near a third one are near each other, two SKUs
+    that are often ordered with the same third SKU tend to be ordered together.
 
     Parameters
     ----------
     config
         Parameters of the affinity; its `pairs` must be at most count (count - 1) / 2.
     seed
-        Seed of the SKUs.
+        Seed of the SKUs, not of the run.
     count
         Number of SKUs.
     """

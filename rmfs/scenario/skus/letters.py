@@ -1,7 +1,7 @@
-"""Coloured letters as SKUs, after Alphabet Soup.
+"""Coloured letters as SKUs, as in the simulator Alphabet Soup.
 
-The simulator "Alphabet Soup" represents orders as words: each letter is a coloured tile that has to
-be picked. RAWSim-O has the same as its letter mode (item type Letter).
+Orders are words, and each letter of a word is a coloured tile that has to be picked. In RAWSim-O,
+this is the letter mode (item type Letter).
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ class Alphabet:
     Attributes
     ----------
     words
-        The words, each as the numbers of its letters.
+        The words, each as the indices of its letters in `letters`.
     letters
         All letters of the words, in alphabetical order.
     colours
-        Weight of each colour by its name.
+        Names of the colours, each with its weight.
     """
 
     words: tuple[tuple[int, ...], ...]
@@ -51,7 +51,7 @@ class Alphabet:
     colours: dict[str, float]
 
     def sku(self, letter: int, colour: int) -> int:
-        """Return the SKU of a letter in a colour."""
+        """Return the index of the SKU of a letter in a colour, both given by their indices."""
         return letter * len(self.colours) + colour
 
 
@@ -83,7 +83,7 @@ def letter_sku_set(config: LetterSkus) -> SkuSet:
 
 
 def read_alphabet(config: LetterSkus) -> Alphabet:
-    """Read the words that a scenario names.
+    """Read the file of words that a scenario names.
 
     Raises
     ------

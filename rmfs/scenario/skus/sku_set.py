@@ -25,18 +25,19 @@ class SkuSet:
     Attributes
     ----------
     ids
-        Number of each SKU in its file, or its index, shape (K,).
+        Number of each SKU in the file of SKUs, or its index if it has no such number, shape (K,).
     popularity
-        Relative weight with which each is ordered and replenished, shape (K,), rounded to 30
+        Relative weight with which each SKU is ordered and replenished, shape (K,), rounded to 30
         significant bits.
     space_per_unit
         Space units of one unit, shape (K,), in steps of 2**-20 (`exact.space`).
     bundle_units
         Units per bundle, shape (K,).
     affinity
-        Pairs of SKUs that are ordered together. None: every line is drawn by popularity.
+        Weights of pairs of SKUs, for drawing lines by affinity; None if every line is drawn by
+        popularity.
     names
-        Names of the SKUs, or empty; not part of the digest.
+        Names of the SKUs, not part of the digest; empty if they have none.
     """
 
     ids: NDArray[np.int64]
@@ -64,7 +65,7 @@ class SkuSet:
 
     @cached_property
     def by_popularity(self) -> Categorical:
-        """Sampler of SKUs by popularity; its `probabilities` are shares of demand."""
+        """Sampler of SKUs by popularity; its `probabilities` are the normalised popularities."""
         return Categorical(self.popularity)
 
     @cached_property
@@ -73,7 +74,7 @@ class SkuSet:
         return {sku: index for index, sku in enumerate(self.ids.tolist())}
 
     def digest(self) -> str:
-        """Return the SHA-256 of all arrays, which is equal for equal SKUs on every machine."""
+        """Return the SHA-256 of all arrays and of the affinity; it is the same on every machine."""
         hashed = hashlib.sha256()
         for array in (self.ids, self.popularity, self.space_per_unit, self.bundle_units):
             hashed.update(array.astype(array.dtype.newbyteorder("<")).tobytes())

@@ -25,12 +25,12 @@ class Columns:
     names
         Names of the columns in the file.
     rows
-        Receiver of the rows, to which the names of the user's own columns are passed.
+        Receiver of the rows; it is told the names of the user's own columns.
 
     Raises
     ------
     ValueError
-        If a column is missing or occurs twice, or a name looks misspelt.
+        If a required column is missing, a column occurs twice, or a name looks misspelt.
     """
 
     def __init__(self, names: Sequence[str], rows: Rows) -> None:
@@ -57,7 +57,7 @@ class Columns:
         rows.begin([names[at] for at in further])
 
     def arranged(self, fields: Sequence[str]) -> list[str]:
-        """Return the fields of a row in the expected order, empty for missing columns.
+        """Return the fields of a row as `Rows.take` expects them, empty for missing columns.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Names and additional columns of a file of orders, kept so that results can be joined to them."""
+"""Order names and additional columns of a file, kept so that results can be joined to them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class OrderFile:
     names
         Name of each order, n texts.
     line
-        Number of the line (CSV) or row (Parquet) of each order line in the file, shape (m,).
+        For each order line, the number of its line (CSV) or row (Parquet) in the file, shape (m,).
     columns
         For each additional column, its m texts: an array of indices, shape (m,), and the tuple of
         distinct texts to which the indices refer.
@@ -37,7 +37,7 @@ class OrderFile:
 
 
 class OrderFileBuilder:
-    """Builds an `OrderFile`; each repetition of a text takes 4 bytes.
+    """Builds an `OrderFile`; a repeated text in an additional column takes only 4 bytes.
 
     Parameters
     ----------
@@ -57,7 +57,15 @@ class OrderFileBuilder:
         self._names.append(name)
 
     def add_line(self, number: int, further: Sequence[str]) -> None:
-        """Add a line to the last order, given its number in the file and its additional fields."""
+        """Add a line to the last order.
+
+        Parameters
+        ----------
+        number
+            Number of the line (CSV) or row (Parquet) in the file.
+        further
+            Fields of the additional columns.
+        """
         self._line.append(number)
         for codes, texts, text in zip(self._codes, self._texts, further, strict=True):
             codes.append(texts.setdefault(text, len(texts)))

@@ -1,4 +1,4 @@
-"""Reading and writing of rows of Parquet files."""
+"""Reading and writing of Parquet files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LARGEST_HEADER = 1 << 24
 
 
 def read_parquet(path: Path, rows: Rows, problems: Problems) -> None:
-    """Pass the rows of a Parquet file to a receiver, as text; row 1 is the first.
+    """Pass the rows of a Parquet file to a receiver, as text; rows are counted from 1.
 
     Errors in the contents are added to `problems`.
 

@@ -1,4 +1,4 @@
-"""Reading of streams from files."""
+"""Reading of streams of orders and bundles from files."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def read_orders(
 
     The columns are `time` (s or ISO 8601, not decreasing), `order` (any name), `sku` (its name or
     id), `quantity` (units) and `due` (due time, in the format of `time`; may be empty or missing);
-    their sequence is free. The lines of an order are consecutive. Further columns are kept
+    their sequence is free. The lines of an order must be consecutive. Further columns are kept
     (`OrderStream.file`).
 
     Parameters
     ----------
     zero
-        Date and time of time zero. Default: midnight before the first order, if times are in ISO
-        8601.
+        Date and time of time zero, used if times are in ISO 8601. Default: midnight before the
+        first order.
     classes
         Names of the classes of orders. If there are any, a column `priority` contains the name of
         the class of each order; it may be missing, or empty for some orders.
@@ -44,8 +44,8 @@ def read_orders(
     Raises
     ------
     InputError
-        If the file cannot be read, or rows are invalid; the message lists the first of them with
-        the reasons.
+        If the file cannot be read, or its contents are invalid; the message lists the first
+        errors.
     """
     problems = Problems(path)
     rows = OrderRows(skus, problems, _word(path), zero, classes)
@@ -59,21 +59,22 @@ def read_bundles(
     """Read bundles from a .csv or .parquet file.
 
     The columns are `time` (s or ISO 8601, not decreasing), `sku` (its name or id) and `quantity`
-    (units); their sequence is free. A column `order` (any name) is allowed; a column `due` must be
-    empty. Each line is a bundle. Further columns are kept (`BundleStream.file`).
+    (units); their sequence is free. Each line is a bundle. A column `order` may contain names of
+    bundles; a column `due`, if present, must be empty. Further columns are kept
+    (`BundleStream.file`).
 
     Parameters
     ----------
     largest
-        Space units of the largest pod.
+        Capacity of the largest pod, in space units; a larger bundle is an error.
     zero
         As for `read_orders`.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or rows are invalid; the message lists the first of them with
-        the reasons.
+        If the file cannot be read, or its contents are invalid; the message lists the first
+        errors.
     """
     problems = Problems(path)
     rows = BundleRows(skus, problems, _word(path), largest, zero)

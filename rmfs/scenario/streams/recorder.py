@@ -8,9 +8,10 @@ from rmfs.scenario.streams.stream import BundleStreamBuilder, OrderStreamBuilder
 class StreamRecorder:
     """Collects the orders and bundles of a run as they arrive.
 
-    Passed to `order_intake` and `bundle_intake`, it records streams that depend on the run, such as
-    the orders of a constant backlog. `orders.build()` is a stream: `write_stream` writes it to a
-    file, which a scenario reads back with `mode = "stream"` in its table `demand`.
+    If it is passed to `order_intake` and `bundle_intake`, it records all arrivals, including those
+    that depend on the run, such as the orders of a constant backlog. `orders.build()` returns a
+    stream, which `write_stream` writes to a file; a scenario can read this file if its table
+    `demand` contains `mode = "stream"`.
 
     Attributes
     ----------

@@ -32,7 +32,7 @@ class Rows(Protocol):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the known columns."""
+        """Names of the columns known to rmfs, in the order in which `take` expects them."""
 
     @property
     def required(self) -> frozenset[str]:
@@ -47,14 +47,14 @@ class Rows(Protocol):
         Parameters
         ----------
         number
-            Number of the line or row.
+            Number of the line (CSV) or row (Parquet) in the file.
         fields
             Fields in the order of `columns`, empty for missing columns; then those of additional
             columns.
         """
 
     def end(self) -> None:
-        """Run checks that need the whole file."""
+        """Do what remains to be done after the last row."""
 
 
 class _Fields:
@@ -130,7 +130,7 @@ class _StreamRows:
 
 
 class OrderRows(_StreamRows):
-    """Rows of orders: the lines of an order follow each other and agree in time and due time.
+    """Rows of orders: lines of an order are consecutive and agree in time, due time and priority.
 
     Parameters
     ----------
@@ -143,7 +143,8 @@ class OrderRows(_StreamRows):
     zero
         Date and time of time zero, for times in ISO 8601 (see `Times`).
     classes
-        Names of the classes of orders. Without classes, a column `priority` is an additional one.
+        Names of the classes of orders. Without classes, a column `priority` counts as one of the
+        additional columns.
     """
 
     required = frozenset(("time", "order", "sku", "quantity"))
@@ -243,7 +244,7 @@ class BundleRows(_StreamRows):
     word
         Word for a row in messages: line or row.
     largest
-        Space units of the largest pod.
+        Capacity of the largest pod, in space units; a larger bundle is an error.
     zero
         Date and time of time zero, for times in ISO 8601 (see `Times`).
     """
@@ -285,4 +286,4 @@ class BundleRows(_StreamRows):
         self.file.add_line(number, further)
 
     def end(self) -> None:
-        """Do nothing, as nothing is left to check."""
+        """Do nothing, as each bundle was added with its row."""

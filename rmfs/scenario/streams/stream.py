@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams.order_file import OrderFile
 
 NO_DUE_US = -1
-"""Due time of an order without one."""
+"""Stands for the due time of an order that has none."""
 
 
 class _Frozen:
@@ -42,12 +42,12 @@ class OrderStream(_Frozen):
     sku, units
         SKU (index) and units of each line, shape (m,).
     file
-        Additional contents of the file from which they were read, if any.
+        Order names and additional columns of the file from which the stream was read, if any.
     classes
-        Names of the classes of orders, if there are classes.
+        Names of the classes of orders; empty if orders have no classes.
     priority
-        Index of the class of each order, shape (n,); -1 if it has none. None if there are no
-        classes.
+        Index of the class of each order, shape (n,), -1 for an order without a class. The whole
+        attribute is None if `classes` is empty.
     """
 
     time_us: NDArray[np.int64]
@@ -79,7 +79,7 @@ class BundleStream(_Frozen):
     sku, units
         SKU (index) and units of each bundle, shape (n,).
     file
-        Additional contents of the file from which they were read, if any.
+        Bundle names and additional columns of the file from which the stream was read, if any.
     """
 
     time_us: NDArray[np.int64]
@@ -97,7 +97,7 @@ class OrderStreamBuilder:
     Attributes
     ----------
     classes
-        Names of the classes of orders, if there are classes.
+        Names of the classes of orders; empty if orders have no classes.
     """
 
     def __init__(self, classes: tuple[str, ...] = ()) -> None:

@@ -39,7 +39,8 @@ class Times:
         Raises
         ------
         FieldError
-            If it is not a time, is in another format than earlier times, or is out of bounds.
+            If the field does not contain a time, or the time is out of bounds or in another format
+            than earlier times.
         """
         moment = self._moment(column, text)
         if moment is not None:
@@ -82,7 +83,7 @@ class Times:
 
 
 def parsed(text: str) -> datetime | None:
-    """Parse date and time in ISO 8601; None if it is invalid."""
+    """Return the date and time that a text in ISO 8601 states; None if the text is invalid."""
     try:
         return datetime.fromisoformat(text)
     except ValueError:
@@ -90,7 +91,7 @@ def parsed(text: str) -> datetime | None:
 
 
 def midnight(moment: datetime) -> datetime:
-    """Return midnight before a given time, in the same time zone."""
+    """Return the midnight at which the day of a given time begins, in the same time zone."""
     return moment.replace(hour=0, minute=0, second=0, microsecond=0)
 
 

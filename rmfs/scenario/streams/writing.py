@@ -1,8 +1,8 @@
-"""Streams as files, and the hash that identifies a stream.
+"""Writing of streams to files, and the digest, a hash that identifies a stream.
 
 Every stream has one canonical text: the CSV file written here, with times in s to the microsecond.
-Its SHA-256 is the stream's digest, whatever the format of the file from which it was read; for a
-CSV file written here, the digest is the SHA-256 of the file itself.
+The SHA-256 of this text is the digest of the stream, whatever file the stream was read from. The
+digest of a stream is therefore also the SHA-256 of the CSV file written here.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
     Parameters
     ----------
     skus
-        The SKUs, whose ids are written.
+        The SKUs of the stream; their ids are written to the file.
     path
         The file, with the suffix .csv or .parquet.
 

@@ -1,8 +1,10 @@
 """Affinity of SKUs, measured by how much more often pairs recur than they would by chance.
 
-In the generator, the SKU of each line after the first is drawn with some probability from those
-that are ordered together with the SKU of the previous line. This probability is fitted by
-simulating the generator until pairs of neighbouring lines recur as often as in the file.
+The generator gives SKUs random partners. With a probability called the share of affinity, it draws
+the SKU of a line after the first from the partners of the SKU of the line before, and otherwise by
+popularity. To fit this share, orders are simulated with several shares; interpolation then yields
+the share at which pairs of SKUs in neighbouring lines recur, relative to chance, as often as in the
+file.
 """
 
 from __future__ import annotations
@@ -41,14 +43,16 @@ TRIES = 16
 
 
 def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> float:
-    """Return how often pairs of SKUs recur, relative to lines with independently drawn SKUs.
+    """Return how often pairs of SKUs recur, divided by how often they would recur by chance.
 
-    The result is nan if there are fewer than `LEAST_PAIRS` pairs, or no pair recurs.
+    By chance means that the two SKUs of a pair are drawn independently, except that they differ.
+
+    The result is nan if there are fewer than `LEAST_PAIRS` pairs or no pair recurs.
 
     Parameters
     ----------
     first, second
-        The SKUs of neighbouring lines, shape (m,).
+        The two SKUs of each pair of neighbouring lines, shape (m,) each.
     skus
         Number of SKUs.
     """
@@ -70,9 +74,10 @@ def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> floa
 def neighbours(
     sku: NDArray[np.int64], first_line: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return first SKU, second SKU and index of the order of each pair of consecutive lines.
+    """Return the first SKU, the second SKU and the order of each pair of consecutive lines.
 
-    Only lines of the same order form a pair. The three arrays have one element per pair.
+    Only lines of the same order form a pair. The three arrays have one element per pair; orders are
+    given by their index.
     """
     order = np.repeat(np.arange(len(first_line) - 1), np.diff(first_line))
     here = np.flatnonzero(order[1:] == order[:-1])
@@ -82,12 +87,14 @@ def neighbours(
 def fit_affinity(
     sku: NDArray[np.int64], first_line: NDArray[np.int64], skus: Drawn, seed: int
 ) -> Estimate | None:
-    """Fit the share of affinity (see `Affinity`); None if too few pairs of SKUs recur.
+    """Fit the share of affinity (see `Affinity`).
+
+    The result is None if there are too few pairs of neighbouring lines, or too few of them recur.
 
     Parameters
     ----------
     sku, first_line
-        SKU of each line, and first line of each order, as in an order stream.
+        SKU of each line, and first line of each order, as in `OrderStream`.
     skus
         Function that creates the SKUs of the twin from a share of affinity and a seed.
     seed
@@ -129,7 +136,7 @@ def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Draw
     Parameters
     ----------
     weights
-        Popularity of each SKU, shape (K,); None: popularity is drawn.
+        Popularity of each SKU, shape (K,); if None, popularity is drawn.
     """
 
     def draw(share: float, seed: int) -> SkuSet:
@@ -144,8 +151,8 @@ def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Draw
 def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
     """Return `skus` with affinity: random pairs of SKUs that are ordered together.
 
-    A line after the first is drawn by affinity with probability `share`, that is, from the partners
-    of the SKU of the previous line. On average, a SKU has two partners.
+    With probability `share`, a line after the first is drawn by affinity, that is, from the SKUs
+    that form a pair with the SKU of the line before. On average, a SKU belongs to two pairs.
     """
     pairs = min(skus.count, skus.count * (skus.count - 1) // 2)
     given = GeneratedAffinity(share=round(share, 6), pairs=pairs, default_weight=0.0)
@@ -153,7 +160,7 @@ def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
 
 
 def simulated_lift(lines: NDArray[np.int64], skus: SkuSet, rng: np.random.Generator) -> float:
-    """Return the lift of simulated orders with given numbers of lines; nan as for `lift`.
+    """Return the lift of simulated orders with given numbers of lines; nan if `lift` returns nan.
 
     Parameters
     ----------
@@ -162,7 +169,7 @@ def simulated_lift(lines: NDArray[np.int64], skus: SkuSet, rng: np.random.Genera
     skus
         The SKUs, with affinity.
     rng
-        Random stream that draws the orders.
+        Random generator with which the orders are drawn.
     """
     draw = _Lines(skus, rng)
     lines = lines[lines > 1]

@@ -1,4 +1,4 @@
-"""Comparison of the orders of a file with those of its twin."""
+"""Comparison of the orders of a file with those of its twin, the generator fitted to them."""
 
 from __future__ import annotations
 
@@ -32,18 +32,22 @@ def agreements(
     p_popularity: float,
     p_arrivals: float,
 ) -> list[Agreement]:
-    """Compare orders with those that a scenario generates.
+    """Compare the orders of a file with those that a scenario generates.
 
     Parameters
     ----------
+    stream
+        The orders of the file.
+    scenario
+        The scenario, fitted to these orders.
     skus
         SKUs of the scenario.
     days
         Number of days over which the orders of `stream` arrive.
     cycle_h
-        Length of the cycle of rates, in h.
+        Period in h after which the arrival rates repeat.
     seed
-        Seed of the run whose orders are compared.
+        Seed with which the scenario generates the orders.
     p_popularity, p_arrivals
         p values of the goodness-of-fit tests of popularity and arrivals; the result includes them.
     """

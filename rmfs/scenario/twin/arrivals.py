@@ -23,11 +23,11 @@ class Arrivals(NamedTuple):
     mean
         Mean number of orders per hour.
     hours
-        Rate in each hour of the cycle, orders per h.
+        Rate in each hour of the day or week, orders per h.
     dispersion, p
-        Ratio of variance to mean of the number of orders per hour, given the fitted rates (1 for a
-        Poisson process), and the two-sided p value of a chi-square test of this ratio; both nan if
-        there are too few hours.
+        Ratio of variance to mean of the number of orders per hour, given the fitted rates
+        (expected: 1 for a Poisson process), and the two-sided p value of a chi-square test of this
+        ratio; both are nan if there are too few hours.
     """
 
     mean: Estimate
@@ -42,11 +42,11 @@ def fit_arrivals(time_us: NDArray[np.int64], days: int, cycle_h: int) -> Arrival
     Parameters
     ----------
     time_us
-        Arrival time of each order since midnight of the first day, shape (n,).
+        Arrival time of each order, counted from 0:00 of the first day, shape (n,).
     days
         Number of observed days, all of them complete.
     cycle_h
-        Length of the cycle of rates, in h: 24 or 168.
+        Period in h after which the rates repeat: 24 or 168.
     """
     each = np.bincount(time_us // HOUR_US, minlength=days * 24)
     of_cycle = np.arange(days * 24) % cycle_h

@@ -23,7 +23,7 @@ class Estimate(NamedTuple):
     name
         Name of the parameter.
     value, low, high
-        Its value, and the ends of its confidence interval at level `LEVEL`.
+        Estimated value, and the ends of its confidence interval at level `LEVEL`.
     """
 
     name: str
@@ -33,7 +33,7 @@ class Estimate(NamedTuple):
 
 
 class Agreement(NamedTuple):
-    """A figure, such as a mean, of the data and of the twin, for comparison.
+    """A figure, such as a mean, computed for the orders of a file (the data) and for their twin.
 
     Attributes
     ----------
@@ -56,6 +56,8 @@ def shares(name: str, counts: NDArray[np.int64]) -> list[Estimate]:
 
     Parameters
     ----------
+    name
+        Beginning of the name of each estimate; the value (1, 2, ...) is added to it.
     counts
         Number of occurrences of each value, shape (n,).
     """

@@ -47,14 +47,14 @@ class Twin:
     scenario
         Scenario that generates orders like those of the file.
     estimates
-        Its parameters, with their intervals.
+        Fitted parameters of the generator, with their confidence intervals.
     agreements
-        Figures of the orders of the file and of orders of the twin.
+        Figures of the orders of the file, and the same figures of orders of the twin.
     orders
         Number of orders in the file.
     skus
-        SKUs of the twin, if they cannot be generated from distributions, so that the scenario needs
-        a file of them; None otherwise.
+        SKUs of the twin if the scenario needs a file of them, because they cannot be generated from
+        distributions; None otherwise.
     """
 
     scenario: Scenario
@@ -76,17 +76,19 @@ def fit_twin(
     name
         Name of the scenario.
     weekly
-        Whether rates repeat every week instead of every day.
+        Whether arrival rates repeat every week instead of every day.
     listed
-        Whether each SKU keeps its popularity from the file, instead of gamma weights.
+        Whether the SKUs of the twin have the popularities found in the file; otherwise, their
+        popularities are drawn from a gamma distribution fitted to the file.
     seed
-        Seed of the twin's SKUs, and of the simulations that estimate the share of affinity.
+        Seed of the twin's SKUs and orders, and of the simulations that estimate the share of
+        affinity (see `Affinity`).
 
     Raises
     ------
     InputError
-        If the file is invalid, contains too few orders, or no gamma weights fit the popularity of
-        its SKUs.
+        If the file is invalid or contains too few orders, or no gamma distribution fits the
+        popularity of its SKUs.
     """
     skus = sku_set(SkuFile(file=path))
     stream = read_orders(path, skus)

@@ -1,8 +1,9 @@
-"""Fit of popularity: gamma weights, fitted to the number of times each SKU was ordered.
+"""Fit of popularity: gamma-distributed weights, fitted to how many times each SKU was ordered.
 
 One line of each order is used, because orders are independent but lines of the same order are not.
-With gamma weights, the counts are negative binomial. SKUs that were never ordered are not in the
-file, so the likelihood of positive counts is used, which also yields the total number of SKUs.
+With gamma-distributed weights, the counts are negative binomial. As SKUs that were never ordered
+are not in the file, the likelihood is conditional on a count above zero. The fitted distribution
+also yields the share of SKUs never ordered, and thus the total number of SKUs.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ FACTORS = (0.03, 0.1, 0.3, 1.0)
 
 
 class Popularity(NamedTuple):
-    """Fitted gamma weights.
+    """Fitted gamma distribution of the SKUs' weights.
 
     Attributes
     ----------
@@ -35,7 +36,7 @@ class Popularity(NamedTuple):
     skus
         Total number of SKUs, including those never ordered.
     p
-        p value of a chi-square test of the counts; nan if there are too few bins.
+        p value of a chi-square test of the counts, grouped in bins; nan if there are too few bins.
     """
 
     shape: Estimate
@@ -44,7 +45,7 @@ class Popularity(NamedTuple):
 
 
 def fit_popularity(counts: NDArray[np.int64]) -> Popularity:
-    """Fit gamma weights by maximum likelihood.
+    """Fit the gamma distribution of the SKUs' weights by maximum likelihood.
 
     Parameters
     ----------

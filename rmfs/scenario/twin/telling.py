@@ -25,7 +25,7 @@ COLUMNS = ("kind", "name", "value", "low", "high", "twin", "p")
 def write_twin(twin: Twin, path: Path) -> None:
     """Write the scenario; if its SKUs cannot be generated from distributions, write them too.
 
-    The file of the SKUs is NAME-skus.json, beside the scenario NAME.toml.
+    If `path` is NAME.toml, the SKUs are written to NAME-skus.json beside it.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def write_twin(twin: Twin, path: Path) -> None:
 
 
 def write_table(twin: Twin, path: Path) -> None:
-    """Write every parameter with its interval, and every figure of the fit, as CSV.
+    """Write all estimates with their confidence intervals, and all agreements, as CSV.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def write_table(twin: Twin, path: Path) -> None:
 
 
 def told(twin: Twin) -> Table:
-    """Return the main parameters and the fit as a table for a terminal."""
+    """Return the main estimates and all agreements as a table for a terminal."""
     table = Table("", "orders", "95 % interval", "twin", "p", box=None)
     for one in twin.estimates:
         if one.name in ("SKUs", "popularity shape", "affinity share"):

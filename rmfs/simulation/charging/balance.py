@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 class Balance(NamedTuple):
-    """Long-run power of a fleet and of its energy stations (chargers, swap stations), in W.
+    """Long-run power supply of a fleet, and its minimum power demand.
 
     Attributes
     ----------
     given_w
-        Maximum power of all energy stations and charging waypoints together.
+        Maximum power in W of all chargers, swap stations and waypoints with inductive charging.
     least_w
-        Minimum power of the fleet: its electronics alone.
+        Minimum power demand of the fleet in W: that of its electronics alone.
     has_stations
-        Whether there is a station to which a robot can be sent for energy.
+        Whether there is a charger or swap station, to which a robot can be sent for energy.
     """
 
     given_w: float
@@ -32,7 +32,7 @@ class Balance(NamedTuple):
 
 
 def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
-    """Return the charging power of each waypoint that has one, in W."""
+    """Return the charging power in W of each waypoint at which robots can charge."""
     power: dict[int, float] = {}
     queues: list[tuple[int, ...]] = []
     given = energy.inductive
@@ -50,7 +50,7 @@ def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
 
 
 def balance(layout: Layout, energy: Energy) -> Balance:
-    """Return the power available to a fleet and its minimum demand."""
+    """Return the power available to a fleet and the fleet's minimum demand."""
     given_w = sum(
         other.kind.long_run_w
         for other in layout.other_stations
@@ -62,10 +62,11 @@ def balance(layout: Layout, energy: Energy) -> Balance:
 
 
 def working_w(layout: Layout, energy: Energy) -> float:
-    """Estimate the power in W of a fleet driving at top speed, half the time with a half-full pod.
+    """Estimate the power in W that a working fleet draws.
 
-    Starts and turns take more, waiting takes less; at the shipped sites these effects roughly
-    cancel. It is an estimate, not a bound.
+    All robots are assumed to drive at top speed, half of the time with a half-full pod. Starts and
+    turns take more power, and waiting takes less; in the shipped layouts, these effects roughly
+    cancel. The result is not a bound.
     """
     pod_kg = energy.pod_kg + energy.goods_kg_per_space * float(layout.pod_capacity.mean()) / 2
     speed = sum(kind.top_speed_m_s for kind in layout.robot_kinds) / len(layout.robot_kinds)
@@ -80,8 +81,8 @@ def refuse(layout: Layout, energy: Energy) -> None:
     Raises
     ------
     InputError
-        If nothing charges, or the available power is below the fleet's minimum demand; the message
-        states the deficit.
+        If nothing can charge batteries, or if the available power is below the fleet's minimum
+        demand; in the latter case, the message states the deficit.
     """
     found = balance(layout, energy)
     if not found.given_w:

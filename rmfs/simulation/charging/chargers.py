@@ -1,4 +1,4 @@
-"""The chargers of a run, which may fail, and from which robots can be sent away."""
+"""The chargers of a run: they may fail, and robots can be sent away from them."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
-"""Prevents stranding: a robot that could not complete another task is sent to charge instead.
+"""Guards robots against stranding, that is, stopping with a nearly empty battery.
 
-Strandings can still occur, for example after a long delay or if a charger is out of service. They
-are counted, and the robot is rescued after a given time.
+A robot whose energy might not suffice for another task is sent to charge instead. Strandings can
+still occur, for example after a long delay or if a charger is out of service. They are counted, and
+a stranded robot is rescued after a given time.
 """
 
 from __future__ import annotations
@@ -66,13 +67,14 @@ class EnergyGuard:
         self._safe_until_s = [0.0] * len(view.robots)
 
     def begin(self) -> None:
-        """Schedule the first check."""
+        """Schedule the first check of all levels."""
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:
-        """Send to charge every robot that could not complete another task.
+        """Send each free or resting robot to charge if its energy might not suffice for a task.
 
-        To be called before tasks are assigned. A robot that carries a pod stores it first.
+        This method must be called before tasks are assigned. A robot that carries a pod stores it
+        first.
         """
         view = self._view
         for robot in [*view.asking.values(), *view.resting.values()]:

@@ -1,18 +1,19 @@
 """Upper bound of the energy a robot needs for one more task and the way to an energy station.
 
-The bound holds for every path in the layout. For each part of the task, it multiplies the longest
-unhindered time by an upper bound on the mean power; the energy of lifting the pod is added. For
+Energy stations are chargers and swap stations. The bound assumes the most distant pods, stations
+and storage locations: for each part of the task, the time of the longest trip without other robots
+is multiplied by an upper bound on the mean power, and the energy of lifting the pod is added. For
 motion from rest to rest, the mean power in W of a robot with a total mass of *m* kg is at most
-*m p* plus the power of its electronics. Here *p* is the larger of two bounds in W/kg, divided by
-the efficiency of the drive:
+*m p* plus the power of its electronics. Here *p* is the larger of the following two bounds in W/kg,
+divided by the efficiency of the drive:
 
-- A run at top speed *v* takes at most *c g v* against rolling resistance, with the coefficient *c*
-  and the acceleration of gravity *g*. In addition, it takes at most the kinetic energy
-  *(1 + k) v² / 2* in the time *v / a + v / b*, with the acceleration *a*, the deceleration *b*, and
-  the inertia *k* of rotating parts as a share of the mass.
-- A turn at the angular speed *w* takes *t g w* against its resistance, with the resisting torque
-  per weight *t* in m. In addition, it takes the kinetic energy *(r w)² / 2* in the time of the
-  turn, with the radius of gyration *r*.
+- Straight motion: *c g v* for the rolling resistance plus *(1 + k) v² / 2 / (v / a + v / b)* for
+  the kinetic energy, with the coefficient of rolling resistance *c*, the acceleration of gravity
+  *g*, the top speed *v*, the acceleration *a*, the deceleration *b*, and the inertia *k* of
+  rotating parts as a share of the mass.
+- Turns: *t g w* for the turning resistance plus *(r w)² / 2 / (d / w)* for the kinetic energy, with
+  the resisting torque per weight *t* in m, the angular speed *w*, the radius of gyration *r*, and
+  the smallest turn *d*, a right angle.
 
 The reserve of the battery covers waiting and the influence of other robots.
 """
@@ -94,7 +95,7 @@ class Needs:
         self._loaded_w, self._work = loaded_w, work
 
     def task_from_j(self, waypoint: int) -> float:
-        """Return the bound `task_j` in J for a robot that stands at a given waypoint.
+        """Return a bound like `task_j`, in J, for a robot that stands at a given waypoint.
 
         The robot fetches any pod, brings it to the station farthest from the pod, stores it
         anywhere, and goes to charge. The result is never greater than `task_j`.

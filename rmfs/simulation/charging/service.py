@@ -49,7 +49,7 @@ class ChargeService:
         return self._task is not None
 
     def go_on(self) -> None:
-        """Start charging the robot at the charger, if there is one."""
+        """Start charging the robot at the charger, if a robot is there."""
         robot = self.station.robot
         task: Any = self._world.robots[robot].task if robot >= 0 else None
         if self._task is None and isinstance(task, ChargeTask):
@@ -57,7 +57,7 @@ class ChargeService:
             self._enter()
 
     def set_power(self, power_w: float) -> None:
-        """Change the charging power, in W; the caller also sets it in `Traffic`."""
+        """Change the charging power, in W; the caller must also set it in `Traffic`."""
         self.power_w = power_w
         if self._task is not None:
             self._cancel()

@@ -22,7 +22,12 @@ if TYPE_CHECKING:
 def count_energy(
     given: Energy | None, layout: Layout, world: World, fleet: Traffic, seed: int
 ) -> list[Observer]:
-    """Let traffic count energy, if configured; return the observers that the run needs for it.
+    """Set up the counting of energy and the batteries, if the scenario specifies them.
+
+    Returns
+    -------
+    list[Observer]
+        Observers that the run needs to count energy; empty if energy is not counted.
 
     Raises
     ------

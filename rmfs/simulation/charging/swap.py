@@ -22,7 +22,8 @@ class SwapService:
     Attributes
     ----------
     stock
-        For each battery, the level (share) with which it arrived, and the time of its arrival (s).
+        For each battery in stock, the level (share) that it had on arrival, and the time (s) of its
+        arrival.
     """
 
     def __init__(
@@ -53,7 +54,7 @@ class SwapService:
             self._agenda.at(end_us, self._end)
 
     def levels(self) -> list[float]:
-        """Return the present levels of the batteries in stock, as shares, at most 1."""
+        """Return the present level of each battery in stock, as a share of its capacity."""
         batteries, now_s = self._world.batteries, self._world.now_s
         assert batteries is not None
         full, power_w = batteries.given.full_share, self.parameters.power_w

@@ -36,7 +36,7 @@ class Pacing(Protocol):
     Attributes
     ----------
     waits
-        Whether a solver may run while the simulation continues.
+        Whether solvers run beside the simulation, so that `limit_us` may have to wait for them.
     """
 
     waits: bool
@@ -49,14 +49,15 @@ class Pacing(Protocol):
         modules
             Modules with the functions that answer the questions.
         give
-            Function to be called once for each answered question, possibly from within `ask`. Its
-            arguments are the call, which holds the answer, and the simulated time (us) at which the
-            answer takes effect.
+            Function to be called once for each question that has been answered or has failed,
+            possibly from within `ask`. Its arguments are the call, which holds the answer or the
+            reason for the failure, and the simulated time (us) at which the
+            controller is to be told.
         """
         ...
 
     def ask(self, call: Call) -> None:
-        """Start solving a question."""
+        """Process a question: solve it now, let a worker solve it, or look up its answer."""
         ...
 
     def limit_us(self, now_us: int) -> int:

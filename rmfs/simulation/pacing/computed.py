@@ -1,4 +1,4 @@
-"""Reproducible modes: questions are solved immediately; answers are delayed by a computed time."""
+"""Reproducible pacing: questions are solved at once; answers take effect after a computed time."""
 
 from __future__ import annotations
 
@@ -59,8 +59,8 @@ SECONDS_PER_ENTRY = {
     "scipy": 0.0,
     "visits": 6.673e-09,
 }
-"""Seconds per entry of the solver's model that is built (`Answer.built`), from the same
-measurement; 0 for other back ends."""
+"""Seconds per nonzero entry of the solver's model (`Answer.built`), from the same measurement; 0
+for other back ends."""
 
 
 SECONDS_PER_INSTANT = 1.4e-4
@@ -70,7 +70,7 @@ Measured with the POA rule `rollout` at the site `small-arrivals` on the same ma
 
 
 class Computed(ABC):
-    """Solves each question in the same process as the simulation, which waits for the answer."""
+    """Base class: `ask` solves the question itself, in the process of the simulation."""
 
     waits = False
 
@@ -84,7 +84,8 @@ class Computed(ABC):
         Raises
         ------
         OptimiserError
-            If the optimiser fails: a reproducible run stops, as the failure may be due to chance.
+            If the optimiser fails. The failure may be due to chance, so a run that continued
+            without the answer would not be reproducible.
         """
         ask = call.ask
         try:
@@ -99,7 +100,7 @@ class Computed(ABC):
         self._give(call, call.requested_us + ceil(self.seconds(answer) * 1e6))
 
     def limit_us(self, now_us: int) -> int:
-        """Return no limit, as delayed answers are in the agenda."""
+        """Return no limit, as every question is answered as soon as it is asked."""
         return NEVER_US
 
     def end(self) -> None:  # noqa: B027 - not for subclasses: there is nothing to end
@@ -107,7 +108,7 @@ class Computed(ABC):
 
     @abstractmethod
     def seconds(self, answer: Answer) -> float:
-        """Return the simulated time from a question to the effect of its answer, in s."""
+        """Return the simulated time from the question until its answer takes effect, in s."""
 
 
 class Instant(Computed):
@@ -119,7 +120,11 @@ class Instant(Computed):
 
 
 class Work(Computed):
-    """Answers take simulated time per call, per unit of work, and per entry of the model."""
+    """Answers take simulated time according to the work of the solver.
+
+    This time is the sum of the times for the call, for each unit of work, and for each nonzero of
+    the solver's model.
+    """
 
     def __init__(self, settings: WorkPacing) -> None:
         self._per_call = settings.seconds_per_call
@@ -127,12 +132,12 @@ class Work(Computed):
         self._per_entry = settings.seconds_per_entry
 
     def seconds(self, answer: Answer) -> float:
-        """Return the time of an answer in s, at the rates of its back end.
+        """Return the simulated time that an answer takes, in s, from its work and model size.
 
         Raises
         ------
         InputError
-            If the time per unit of this back end is unknown.
+            If the time per unit of work is unknown for the answer's back end.
         """
         unit, call = self._per_unit, self._per_call
         if isinstance(unit, dict):
@@ -152,14 +157,14 @@ class Work(Computed):
 
 
 class Fixed(Computed):
-    """Answers take a constant time, or one drawn from a distribution."""
+    """Answers take a constant simulated time, or random times from a distribution."""
 
     def __init__(self, settings: FixedPacing, seed: int) -> None:
         self._seconds = settings.seconds
         self._rng = generator(seed, Stream.PACING)
 
     def seconds(self, answer: Answer) -> float:
-        """Return the constant time, or draw one, in s."""
+        """Return the constant time, or a newly drawn time, in s."""
         if isinstance(self._seconds, float):
             return self._seconds
         return float(self._seconds.quantile(self._rng.random()))

@@ -1,4 +1,4 @@
-"""Errors of optimisers that stop a run."""
+"""Errors that stop a run in which controllers ask optimisers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from rmfs.errors import ReplayError as ReplayError
 
 
 class OptimiserError(RuntimeError):
-    """An optimiser failed in a reproducible run, or its worker process could not start.
+    """An optimiser failed in a reproducible run, or a worker process could not start.
 
-    In a reproducible run, falling back to the rule would hide the failure.
+    In a reproducible run, the controller's own rule does not take over after a failure, as this
+    would hide the failure.
     """

@@ -1,4 +1,4 @@
-"""Path planning that takes simulated time: its modes, parsed from user input and set in traffic."""
+"""Modes of path planning, which determine how much simulated time plans take."""
 
 from __future__ import annotations
 
@@ -67,11 +67,12 @@ class WorkPlanning(_Planning):
     seconds_per_label: NotNegative = SECONDS_PER_LABEL
     """Simulated seconds per label; by default those of the machine of the published figures."""
     seconds_per_search: NotNegative = SECONDS_PER_SEARCH
-    """Additional simulated seconds per search; by default as above."""
+    """Additional simulated seconds per search; by default those of the machine of the published
+    figures."""
 
 
 class WallPlanning(_Planning):
-    """Plans take the wall time of their search."""
+    """A plan takes simulated time: the wall time of its search, times `speed`."""
 
     mode: Literal["wall"] = "wall"
     speed: Positive = 1.0
@@ -79,7 +80,7 @@ class WallPlanning(_Planning):
 
 
 class ReplayPlanning(Model):
-    """Plans take the times recorded in another run, whose other planning parameters also apply."""
+    """Plans take the times recorded in a run; the planning parameters of that run apply as well."""
 
     model_config = _Planning.model_config
     mode: Literal["replay"] = "replay"
@@ -109,8 +110,8 @@ def planning_settings(overrides: Overrides) -> PlanningSettings:
     Parameters
     ----------
     overrides
-        Pairs of path and value. With an empty path, the value is the mode, such as `fixed=0.3`;
-        the other pairs are parameters, such as `(["period_s"], 5)`.
+        Pairs of a list of keys and a value. If the list is empty, the value is the mode, such as
+        `fixed=0.3`; otherwise the list names a parameter, as in `(["period_s"], 5)`.
 
     Raises
     ------
@@ -159,7 +160,8 @@ def let_plans_take_time(
     Raises
     ------
     InputError
-        If the planner does not plan trip by trip, or a run to replay has no recorded plans.
+        If the planner does not plan one trip at a time, or if no search for a plan was recorded
+        in the run to be replayed.
     """
     tape: Tape = []
     how = settings

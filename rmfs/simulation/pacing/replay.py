@@ -1,4 +1,4 @@
-"""Replay: uses the answers of a recorded run, at the recorded times."""
+"""Replay: the answers of a recorded run take effect again, at the recorded times."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Replay:
-    """Pacing that calls no solver.
+    """Pacing that gives recorded answers and calls no solver.
 
     Parameters
     ----------
@@ -38,12 +38,12 @@ class Replay:
         self._give = give
 
     def ask(self, call: Call) -> None:
-        """Give the recorded answer.
+        """Give the recorded answer, if the recorded run got one.
 
         Raises
         ------
         ReplayError
-            If this is not the recorded question.
+            If the recorded run did not ask this question at the same time and in the same state.
         """
         row = self._recorded(call)
         completed_us = int(row["completed_us"])

@@ -33,7 +33,7 @@ class InstantPacing(_Mode):
 
 
 class WallPacing(_Mode):
-    """Optimisers take the wall time that they need, and run in parallel with the simulation."""
+    """Optimisers run beside the simulation; their wall time, times `speed`, is simulated time."""
 
     mode: Literal["wall"] = "wall"
     speed: Positive = 1.0
@@ -45,7 +45,11 @@ class WallPacing(_Mode):
 
 
 class WorkPacing(_Mode):
-    """Optimisers take simulated time per call, per unit of work, and per entry of the model."""
+    """Optimisers take simulated time according to their work.
+
+    This time is the sum of the times for the call, for each unit of work, and for each nonzero of
+    the solver's model.
+    """
 
     mode: Literal["work"] = "work"
     seconds_per_unit: NotNegative | dict[str, NotNegative] = Field(default_factory=dict)
@@ -55,7 +59,7 @@ class WorkPacing(_Mode):
     """Additional simulated seconds per call, for all back ends; by default those of the machine of
     the published figures."""
     seconds_per_entry: NotNegative | None = None
-    """Simulated seconds per entry of the solver's model that is built, for all back ends; by
+    """Simulated seconds per nonzero entry of the solver's model, for all back ends; by
     default those of the machine of the published figures."""
 
 
@@ -92,15 +96,15 @@ _EXAMPLES = {"fixed": "SECONDS", "replay": "RUN_DIR"}
 
 
 def pacing_settings(mode: str, overrides: Sequence[tuple[list[str], Any]] = ()) -> PacingSettings:
-    """Parse a pacing mode.
+    """Parse a pacing mode and its parameters.
 
     Parameters
     ----------
     mode
         `instant`, `wall`, `work`, `fixed=SECONDS` or `replay=RUN_DIR`.
     overrides
-        Pairs of path and value for the parameters of the mode, such as `(["speed"], 2.0)`; paths
-        that begin with `planning` concern path planning.
+        Pairs of a list of keys and a value, each for one parameter of the mode, such as
+        `(["speed"], 2.0)`; if the first key is `planning`, the pair concerns path planning.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Wall pacing: optimisers run in parallel, and their wall time counts as simulated time."""
+"""Wall pacing: optimisers run beside the simulation; their wall time counts as simulated time."""
 
 from __future__ import annotations
 
@@ -42,13 +42,14 @@ class _Open:
 
 
 class Wall:
-    """Submits questions to worker processes and limits the simulation while a question is open.
+    """Lets worker processes answer questions, and meanwhile limits the simulated time.
 
-    While a question is open, the simulated time since it was asked is at most the wall time since
-    it was submitted, times `speed` (RAWSim-O paper, section 3.1). Its answer takes effect when the
-    wall time that it took, times `speed`, has passed in the simulation. This wall time begins just
-    before the question is pickled and ends when the worker has pickled the answer. It includes the
-    time that the question is queued, but not the time that `ask` first waits for a worker to start.
+    The wall time of a question begins just before the question is pickled and ends when a worker
+    has pickled the answer. It includes the time for which the question is queued because all
+    workers are busy, but not the time for which `ask` waits for a worker that is still starting.
+    While there is no answer, the simulated time since the question was asked is at most `speed`
+    times the question's wall time so far (RAWSim-O paper, section 3.1). The answer takes effect
+    when the simulated time since the question was asked is `speed` times the question's wall time.
 
     Parameters
     ----------
@@ -80,7 +81,7 @@ class Wall:
             self._started().await_ready()
 
     def ask(self, call: Call) -> None:
-        """Submit a question to a worker, or queue it."""
+        """Send a question to an idle worker, or queue it if all workers are busy."""
         worker = self._started().idle()
         since_s = time.monotonic()
         load = pickle.dumps((call.ask.solve, call.ask.question))
@@ -94,7 +95,7 @@ class Wall:
     def limit_us(self, now_us: int) -> int:
         """Sleep until times after `now_us` may be simulated; return the latest such time, in us.
 
-        Without open questions there is no limit.
+        If no question waits for an answer, there is no limit.
         """
         while self._open:
             self._collect(now_us)

@@ -1,7 +1,8 @@
 """A worker process: answers questions one after another until its connection is closed.
 
-It is started with a bare interpreter, not by forking or by importing the user's script again, so
-that a script needs no `if __name__ == "__main__"`, and a notebook works.
+It is started as a new Python interpreter, without forking and without importing the user's script
+again. A script therefore needs no `if __name__ == "__main__"`, and workers also start from a
+notebook.
 """
 
 from __future__ import annotations

@@ -38,14 +38,14 @@ main(int(sys.argv[1]), json.loads(sys.argv[3]))
 
 @dataclass(frozen=True)
 class Reply:
-    """What a worker returned.
+    """The answer to a question, or the reason why there is none.
 
     Attributes
     ----------
     at_s
-        Time of the reply on the monotonic clock, in s.
+        Time at which the answer was ready or the failure was noticed, on the monotonic clock, in s.
     failure
-        Reason for a missing answer, in one line.
+        Reason why there is no answer, in one line; empty if there is one.
     """
 
     at_s: float
@@ -66,7 +66,7 @@ class Worker:
     connection
         Connection for questions and replies.
     number
-        Number of the question it is working on, or -1.
+        Number of the question on which the worker is working; -1 if it is idle.
     is_ready
         Whether its modules are imported.
     """
@@ -90,7 +90,7 @@ class Worker:
         other.close()
 
     def await_ready(self) -> None:
-        """Wait until its modules are imported.
+        """Wait until the worker has imported its modules.
 
         Raises
         ------
@@ -117,7 +117,7 @@ class Worker:
             return
 
     def reply(self) -> Reply | None:
-        """Return the reply to its question, if it has arrived.
+        """Return the worker's reply to its present question; None if none has arrived.
 
         Raises
         ------
@@ -149,14 +149,14 @@ class Worker:
 
 
 class Workers:
-    """A fixed number of workers; a lost one is replaced.
+    """A fixed number of worker processes, each of which can be replaced.
 
     Parameters
     ----------
     count
         Number of workers.
     modules
-        Modules that each imports before it is ready.
+        Modules that each worker imports before it is ready.
     """
 
     def __init__(self, count: int, modules: Iterable[str]) -> None:
@@ -164,7 +164,7 @@ class Workers:
         self._workers = [Worker(self._modules) for _ in range(count)]
 
     def await_ready(self) -> None:
-        """Wait until all are ready."""
+        """Wait until all workers are ready."""
         for worker in self._workers:
             worker.await_ready()
 
@@ -174,7 +174,7 @@ class Workers:
     def idle(self) -> Worker | None:
         """Return an idle worker that is ready; None if all are busy.
 
-        If no idle worker is ready yet, this waits until one is.
+        If there are idle workers but none is ready yet, this waits for the first of them.
         """
         idle = [worker for worker in self._workers if worker.number < 0]
         if not idle:

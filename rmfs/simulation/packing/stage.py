@@ -1,8 +1,10 @@
 """The packing stage, from the pick stations to the packed parcel.
 
-A pick station asks the stage before it releases an order, or a part of one. If the wall or the
-conveyor is full, the tote stays in its slot, and the station is called as soon as there is room.
-Durations of zero need no agenda entry, so that a stage without any delays changes nothing.
+A pick station asks the stage before it releases a tote with an order, or with a part of one. If the
+put wall, or the conveyor to it, is full, the tote stays in its order slot. As soon as there is
+room, the stage lets the station release the tote; if that takes too long, the tote is carried to
+the wall by hand. Steps that take no time have no entry in the agenda, so that a stage without any
+delays does not change the results of the run.
 """
 
 from __future__ import annotations
@@ -39,9 +41,9 @@ class PackingStage(Observer):
     Parameters
     ----------
     given
-        Parameters of the scenario.
+        The table `packing` of the scenario.
     services
-        Services of all stations; pick stations use this stage from now on.
+        Services of all stations; those of pick stations use this stage from now on.
     """
 
     def __init__(
@@ -74,7 +76,7 @@ class PackingStage(Observer):
                 self._services.append(service)
 
     def takes(self, order: Order) -> bool:
-        """Whether a pick station may release an order. If not, the station is called later."""
+        """Whether an order may leave its pick station now; if not, the stage lets it go later."""
         if self._has_room(order):
             return True
         after_us = round(self._given.by_hand_after_s * 1e6)
@@ -106,7 +108,7 @@ class PackingStage(Observer):
             self._let_go()  # parts that had to wait for a slot need none any more
 
     def order_assigned(self, order: Order) -> None:
-        """If lines were added to a part that waits to leave its pick station, keep it there."""
+        """Withdraw a part of an order from those waiting to leave if it has got further lines."""
         for held in self._wall.held:
             if held.order is order:
                 self._forget(held)
@@ -168,7 +170,7 @@ def packing_stage(
     world: World,
     events: Observer,
 ) -> list[Observer]:
-    """Create the stage if the scenario has one; return the observers that the run needs for it."""
+    """Return a list with the packing stage of the scenario; an empty list if it has none."""
     if given is None:
         return []
     return [PackingStage(given, layout, services, seed, agenda=agenda, world=world, events=events)]

@@ -1,4 +1,4 @@
-"""The time and correctness of each pick, given the picker."""
+"""Determines how long each pick takes and whether it is correct, depending on the picker."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from rmfs.world.tasks import Pick, PickTask
 
 TIMES, ERRORS, SPEEDS = range(3)
-"""Random streams of each picker: switching on errors, for example, changes no drawn times."""
+"""Random streams of each picker, so that simulating errors does not change the drawn times."""
 
 
 class Hands(Observer):
-    """Determines for pick stations how each unit is handled.
+    """Determines how each unit is picked: by whom, for how long, and whether correctly.
 
     Parameters
     ----------
@@ -53,7 +53,11 @@ class Hands(Observer):
         return self._staff.at_station[station] is not None
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the first pick from the shown face for an order at the station; None if none."""
+        """Return the task's first pick from the face that the picker sees; None if there is none.
+
+        Only picks for orders at the station count. Before the first pick of a visit, or if pods
+        have no faces, the picker sees no face.
+        """
         faces, shown = self._faces, self._shown(station)
         if faces is None or shown < 0:
             return None
@@ -65,7 +69,7 @@ class Hands(Observer):
         return next(on_face, None)
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
-        """Let the picker of a station start with a unit.
+        """Let the picker of a station start to pick a unit.
 
         Parameters
         ----------
@@ -103,7 +107,7 @@ class Hands(Observer):
         return Handled(*how, face, turned)
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Store the units of a bundle in the layers or on the faces of their pod."""
+        """Assign the units of a stored bundle to layers or faces of their pod."""
         if self._layers is not None:
             self._layers.put(bundle.pod, bundle.sku, bundle.units)
         if self._faces is not None:

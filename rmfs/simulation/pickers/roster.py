@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 class RosterClock:
-    """Places and removes pickers by the roster; without a roster, all pickers come at time zero.
+    """Lets pickers come and leave according to the roster; without one, all come at time zero.
 
     Parameters
     ----------
     given
-        Parameters of the scenario.
+        The scenario's table `pickers.roster`, or None.
     gone_s
         Time of day at time zero, in s.
     services
@@ -53,7 +53,7 @@ class RosterClock:
             self._breaks_us = [_us(period) for period in given.breaks_s]
 
     def begin(self) -> None:
-        """Place the pickers who are present at time zero."""
+        """Let the pickers come who are present at time zero, and schedule the first change."""
         self._change()
 
     def _change(self) -> None:

@@ -37,7 +37,7 @@ def staffed(
     world: World,
     events: Observer,
 ) -> tuple[list[Observer], RosterClock | None]:
-    """Create pickers, if the scenario has them; pick stations use them from now on.
+    """Create the pickers of a scenario, if it has any, and let them work at the pick stations.
 
     Parameters
     ----------
@@ -47,8 +47,8 @@ def staffed(
     Returns
     -------
     tuple
-        The observers that the run needs for them, and the clock of their roster; an empty list and
-        None without pickers.
+        The observers to add to the run, and the clock of the roster; without pickers, an empty list
+        and None.
 
     Raises
     ------

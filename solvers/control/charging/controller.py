@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 class ScheduleControl(ByLevel[ScheduleParameters]):
     """Plans which robots charge when, where and for how long, and carries out the next steps.
 
-    Every `period_s`, a model is given the battery levels of all robots, the charging places, and a
-    forecast of the number of robots needed for work. Over `slots` time slots, it minimises the time
-    for which robots are missing at work plus the robot time that later charging will take. Robots
-    whose stay at a place is due are sent when they are free; charging robots stay as long as the
-    current plan says. Until the first answer, and after a failure, the rule `threshold` applies,
-    with `below_share` and `until_share`.
+    Every `period_s` seconds, a model is given the battery levels of all robots, the charging
+    places, and a forecast of the number of robots needed for work. It plans `slots` time slots
+    ahead, and minimises the time for which needed robots are missing plus the robot time that
+    later charging will take. Robots whose stay at a charging place is due are sent there as soon as
+    they are free; charging robots stay until a new plan makes them leave. Until the first answer,
+    and after a failure, the rule `threshold` applies, with `below_share` and `until_share`.
     """
 
     parameters_model = ScheduleParameters
@@ -52,13 +52,16 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
         self._plan: tuple[Call, set[int], dict[int, int]] | None = None
 
     def next_event_s(self) -> float:
-        """Return when the next schedule is due; inf while one is computed, or without batteries."""
+        """Return when the next schedule is due, in s.
+
+        The time is inf while a schedule is being computed, or if the robots have no batteries.
+        """
         if self.view.batteries is None or self.in_flight:
             return inf
         return max(self._asked_s, 0.0) + self.parameters.period_s
 
     def decide(self) -> Iterator[Told]:
-        """Ask for a schedule when one is due, and carry out what is due now."""
+        """Ask for a schedule if one is due, and carry out the due steps of the last one."""
         batteries = self.view.batteries
         if batteries is None:
             return
@@ -70,7 +73,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
         yield from self._carry_out(batteries)
 
     def answered(self, call: Call) -> Iterator[Told]:
-        """Store the schedule, and carry out what is due now."""
+        """Store the schedule, and carry out its due steps."""
         self._plan = None
         if call.solution is not None:
             stays = zip(call.solution["group"], call.solution["begin"], strict=True)
@@ -89,7 +92,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
             yield from self._carry_out(batteries)
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Return `until_share` for a robot below `below_share`, else 0, like rule `threshold`."""
+        """Return `until_share` if the level `share` is less than `below_share`, otherwise 0."""
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 

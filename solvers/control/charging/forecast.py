@@ -25,10 +25,11 @@ class _Seen(NamedTuple):
 class Forecast:
     """Counts the robots in use for work; recent counts yield a forecast of how many are needed.
 
-    Robots at rest, charging, or queuing behind another waiting robot at a pick or replenishment
-    station are not counted. Some stations with work have no robot at the head of their queue.
-    Therefore the count is multiplied by the number of stations with work, and divided by the number
-    of those that have a robot at the head of their queue.
+    Not counted are robots that rest, robots that charge or are on their way to do so, and all but
+    two of the robots in the queue of each pick or replenishment station. Some stations with work
+    have no robot at the head of their queue. Therefore, the forecast multiplies the counts by the
+    number of stations with work, and divides them by the number of stations with work that have a
+    robot at the head of their queue; both numbers are summed over the times of the counts.
 
     Parameters
     ----------

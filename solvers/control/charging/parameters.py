@@ -53,5 +53,5 @@ class ScheduleParameters(LevelParameters):
 
     @property
     def limits(self) -> Limits:
-        """Return these values as limits of the model."""
+        """Return `work_s`, `nodes` and `gap` as limits of the model."""
         return Limits(deterministic_s=self.work_s, nodes=self.nodes, gap=self.gap)

@@ -1,4 +1,4 @@
-"""The question of CA schedule, and its solution."""
+"""The question that the controller CA schedule asks, and how it is answered."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Question:
     ----------
     method
         `greedy`, `highs` or `cp_sat`. The latter two start from the greedy solution, and are used
-        only if its gap exceeds the limit.
+        only if the gap of that solution exceeds `limits.gap`.
     """
 
     data: Charging
@@ -28,7 +28,10 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Schedule the stays; the answer has `group`, `begin` and `length`, as in `ChargePlan`."""
+    """Schedule the stays of robots at charging places.
+
+    The solution in the answer consists of `group`, `begin` and `length`, as in `ChargePlan`.
+    """
     found = charging.solve(question.data, "greedy")
     if question.method != "greedy" and found.gap > question.limits.gap:
         found = charging.solve(question.data, question.method, question.limits, start=found.values)

@@ -1,4 +1,4 @@
-"""Converts the state of the world to the charging model."""
+"""Converts the state of the world to the data of the charging model."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Group:
     power_w
         Charging power of one charger; 0 for swap stations.
     swapped_share
-        Level after a swap; 0 for chargers.
+        Battery level after a swap; 0 for chargers.
     swaps_s
         Mean time per swap at one station in the long run, in s; 0 for chargers.
     """
@@ -87,11 +87,11 @@ def snapshot(
     Parameters
     ----------
     view, batteries
-        The world.
+        The world, and the batteries of its robots.
     groups
         The groups of stations, in the order of their numbers in the model.
     wanted
-        Robots needed for work in each case, shape (Q,).
+        Number of robots needed for work in each case of the forecast, shape (Q,).
     given
         The controller's parameters.
     """

@@ -1,4 +1,4 @@
-"""POA pile-on: assigns orders and chooses pods jointly by a model; PPS must be `dummy`."""
+"""POA pile-on: a model assigns orders and chooses pods jointly; PPS must be `dummy`."""
 
 from __future__ import annotations
 
@@ -32,16 +32,18 @@ if TYPE_CHECKING:
 class PileOnControl(PickOrderAssignment[PileOnParameters]):
     """Maintains a plan: orders that wait for slots, and called pods that wait for robots.
 
-    The model extends the plan. It is asked, at most once per `buffer_s`, after the events in
-    `triggers`: a station runs out of work within the horizon, a pod reaches a station, or a slot is
-    free for which nothing is planned. It determines which orders go to which station, and which
-    pods are called for them. It also returns *prospects*: orders that the same pods can serve as
-    soon as slots are free. Free slots get the planned orders, and free robots fetch the called
-    pods; parts of the plan that have become invalid are dropped.
+    A model extends the plan. It is asked, at most once in `buffer_s` seconds, after the events in
+    `triggers`: a station for which no pod is called runs out of work within the horizon, a pod
+    reaches a station, or a station with a free slot has no planned orders. The model determines
+    which orders go to which station, and which pods are called for them. It also returns
+    *prospects*: orders that the same pods can serve as soon as slots are free. Free slots get the
+    planned orders, and free robots fetch the called pods; parts of the plan that have become
+    invalid are dropped.
 
     A robot that is to bring a pod to a station fetches the nearest pod called for this station. If
-    the optimiser fails, its method `greedy` decides. For replenishment, and for open requests that
-    no pod called or under way can serve, PPS lexicographic with its defaults decides.
+    the optimiser fails, its method `greedy` decides. PPS lexicographic with its defaults chooses
+    pods for replenishment, and for pick stations for which no pod is called although pods under way
+    do not bring all units needed.
     """
 
     parameters_model = PileOnParameters
@@ -124,8 +126,9 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     def pick_pod(self, robot: Robot, station: PickStation) -> int | By[int]:
         """Return the nearest pod that is called for a station and can serve an open request there.
 
-        If no pod is called for the station, and pods under way do not bring all units that the
-        station's orders need, PPS lexicographic chooses a pod. Otherwise, the result is -1.
+        If no pod at all is called for the station, and pods under way do not bring all units that
+        its orders need, PPS lexicographic chooses a pod. If called pods exist but none of them can
+        serve an open request, or no further units are needed, the result is -1.
         """
         called = self._plan.pods[station.index]
         pods = [pod for pod in called if self._plan.useful(pod, station)]

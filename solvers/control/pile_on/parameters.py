@@ -75,7 +75,7 @@ class JointParameters(SearchParameters):
 
     @property
     def pruning(self) -> Pruning:
-        """Return the limits on candidates."""
+        """Return the limits on the candidate pods and orders passed to CP-SAT."""
         return Pruning(pods_per_sku=self.pods_per_sku, orders_per_slot=self.orders_per_slot)
 
     @property
@@ -90,7 +90,7 @@ class JointParameters(SearchParameters):
 
     @property
     def variant(self) -> Variant:
-        """Return whether an order may take a slot before pods are called for all its lines."""
+        """Return the variant of the model: `LATER` if `later` is true, otherwise `WHOLE`."""
         return Variant.LATER if self.later else Variant.WHOLE
 
     @pydantic.model_validator(mode="after")

@@ -22,14 +22,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """An item planned for a station, and the question whose answer planned it (None: a rule)."""
+    """An item planned for a station.
+
+    Attributes
+    ----------
+    call
+        The question whose answer planned the item; None if a rule did.
+    """
 
     item: Item
     call: Call | None
 
 
 class Called(NamedTuple):
-    """The question whose answer called a pod (None: a rule), and the robot for it (-1: any)."""
+    """How a pod was called for a station.
+
+    Attributes
+    ----------
+    call
+        The question whose answer called the pod; None if a rule did.
+    robot
+        The robot that is to fetch the pod; -1 if any robot may.
+    """
 
     call: Call | None
     robot: int = -1
@@ -38,13 +52,13 @@ class Called(NamedTuple):
 class Plan:
     """For each pick station, items that wait for a slot, and called pods that wait for a robot.
 
-    A planned item reserves the stock with which it was planned: later questions omit the item, and
-    count its units as demand of the station for which it is planned.
+    A planned item reserves stock: later questions omit the item, and count its units as demand of
+    the station for which it is planned.
 
     Attributes
     ----------
     items
-        Items of each station, in the order of the decisions.
+        Items planned for each station.
     pods
         Pods called for each station.
 
@@ -53,12 +67,13 @@ class Plan:
     view
         The world.
     kept_slots
-        Number of slots of each station that are reserved for orders that the pod at the head of
-        its queue can serve.
+        Number of slots of each station that are reserved, mainly for orders that the pod at the
+        head of the station's queue can serve (see `due`).
     later
         Whether items may be assigned before pods are called for all their lines.
     split_orders
-        Maximum number of orders split at a time; None: as many as the put wall holds.
+        Maximum number of orders split at a time; None: as many as the put wall holds, or any
+        number without a wall.
     """
 
     def __init__(
@@ -86,7 +101,7 @@ class Plan:
         Parameters
         ----------
         pays
-            Whether splitting an order is worth its cost; None: always.
+            Returns whether splitting an order is worth its cost; None: always.
         """
         planned = [one.item for items in self.items for one in items]
         orders = [item.order for item in planned if item.line is not None]
@@ -104,10 +119,11 @@ class Plan:
         Parameters
         ----------
         solution
-            `pod_station` and `pod_robot` of each pod, `station` and `prospect` of each item; -1 for
-            none.
+            For each pod, the station for which it is called (`pod_station`) and the robot that is
+            to fetch it (`pod_robot`). For each item, the station at which it gets a slot
+            (`station`) or is a prospect (`prospect`). A value is -1 if there is none.
         items
-            Items behind the indices of the solution.
+            Items to which the indices in the solution refer.
         call
             The question that the solution answers; None if the optimiser failed and the method
             `greedy` decided.
@@ -137,10 +153,11 @@ class Plan:
     def due(self, station: PickStation) -> Iterator[Planned]:
         """Yield items that can be assigned to a station now, one at a time.
 
-        Items that the pod at the head of the queue can serve come first. They may use the reserved
-        slots, and so may items that a called pod can serve, if that called pod serves no open
-        request of the station. Items are dropped and counted as stale if they have left the backlog
-        or, unless `later`, if pods called or under way no longer have enough units for them.
+        Items that the pod at the head of the queue can serve come first. The reserved slots
+        (`kept_slots`) are for these items, and for items served by a called pod that can serve no
+        open request of the station yet. Items are dropped and counted as stale if they have left
+        the backlog or, unless `later`, if pods called or under way no longer have enough units for
+        them.
         """
         self._forget_pods(station)
         waiting = self.items[station.index]

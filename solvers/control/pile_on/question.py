@@ -30,9 +30,10 @@ class Question:
     method
         `joint`, `cp_sat`, `greedy` or `hadgs`.
     limits, pruning
-        Limits of CP-SAT, and how many candidates it is given.
+        Limits on CP-SAT's search, and on the number of pairs (such as pod and station) that it may
+        choose from.
     bound_steps
-        Steps of the search for a bound.
+        Number of steps of the search for a lower bound on the cost of every decision.
     """
 
     data: PileOn
@@ -53,7 +54,9 @@ def solve(question: Question) -> Answer:
     Returns
     -------
     Answer
-        `station` and `prospect` of each order, `pod_station` and `pod_robot` of each pod; -1 for
+        For each order (or line, if orders are split), `station`, where it gets a slot, and
+        `prospect`, where pods can serve it although it gets no slot now. For each pod,
+        `pod_station`, to which it is called, and `pod_robot`, the robot that fetches it; -1 for
         none. The bound is valid for all decisions that the snapshot allows.
     """
     data = question.data
@@ -81,7 +84,7 @@ def solve(question: Question) -> Answer:
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:
-    """Decide by the method `greedy`, after a failure; return values as in `Answer.solution`."""
+    """Return the solution of the method `greedy`, for use when the optimiser has failed."""
     found = solve(replace(question, method="greedy", bound_steps=0)).solution
     assert found is not None
     return found

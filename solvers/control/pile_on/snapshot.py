@@ -67,10 +67,12 @@ def take(
 ) -> Snapshot | None:
     """Collect what is to be decided now; None if there is nothing.
 
-    Orders that stock cannot serve are omitted, and so are planned ones: their units count as demand
-    of their station, and called pods count as under way. At each station, the model may fill one
-    slot for each item that pods under way cover completely, and one more if the station needs a
-    pod; with `when_needed = false`, it may fill all free slots.
+    Orders that stock cannot serve are omitted. So are orders in the plan: their units count as
+    demand of the station for which they are planned, and the pods that the plan calls count as
+    under way. At each station, the model may fill as many slots as there are orders (or lines, if
+    orders are split) that pods under way can serve without another pod, and one more if a pod may
+    be called to the station. With `when_needed = false`, it may fill all free slots for which
+    nothing is planned.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""TA pile-on: decides orders, pods and robots jointly by the model M1G of Jiao et al. (2025)."""
+"""TA pile-on: assigns orders, pods and robots jointly by the model M1G of Jiao et al. (2025)."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ AsksTasks = Literal["pod-at-station", "robot-free", "new-order"]
 
 
 class PileOnTasksParameters(JointParameters):
-    """Parameters of the joint control of orders, pods and robots; defaults are those of M1G."""
+    """Parameters of TA pile-on; by default, the weights of the objective are those of M1G."""
 
     triggers: tuple[AsksTasks, ...] = ("pod-at-station", "robot-free", "new-order")
     """Events after which the optimiser is asked: a pod has reached a station, a robot is free, or
@@ -83,17 +83,18 @@ _ASKS: dict[Trigger, AsksTasks] = {
 class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     """Asks a model which orders take slots, which pods come, and which robots fetch them.
 
-    The model is asked, at most once per `buffer_s`, after the events in `triggers`, if there is a
-    free slot or an open request for which nothing is planned. It may use the robots without a task.
-    Its answer is stored as a plan and carried out as in POA pile-on; if the robot chosen for a
-    called pod is no longer free, the nearest free robot fetches the pod.
+    The model is asked, at most once per `buffer_s`, after the events in `triggers`, if a station
+    has a free slot for which no order is planned, or open requests that the pods under way to it
+    cannot serve. It chooses from the robots that carry no pod and have no task other than resting.
+    Its answer is added to a plan: planned orders get slots when slots are free, and called pods are
+    fetched by the robots that the answer names. If the robot named for a pod is no longer free, the
+    nearest free robot fetches the pod.
 
     All other decisions are made by rules. A robot keeps its pod at the station while there is work
     for the pod, then (with `other_stations`) takes it to pick stations nearby that the pod can
     serve, and finally parks it where PSA says. Up to `replenishment_share` of the robots bring pods
-    to replenishment stations: each goes to the nearest one with work, with a pod chosen by PPS
-    lexicographic. Robots that get no task rest. If the optimiser fails, its method `greedy`
-    decides.
+    to replenishment stations, each to the nearest station with work; PPS lexicographic chooses the
+    pods. A robot rests if it gets no task. If the optimiser fails, its method `greedy` decides.
     """
 
     parameters_model = PileOnTasksParameters
@@ -135,7 +136,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Decision]:
-        """Carry out the plan, ask the optimiser if needed, and assign tasks to the other robots."""
+        """Carry out the plan, ask the optimiser if needed, and assign all other tasks by rules."""
         for robot in [r for r in self.view.asking.values() if r.pod >= 0]:
             yield from self._go_on(robot, consult)
         yield from self._replenish(self._most_at_bundles - self._at_bundles())
@@ -145,7 +146,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
             yield self._to_rest(robot)
 
     def answered(self, call: Call) -> Iterator[Decision]:
-        """Add the valid parts of an answer to the plan, and carry it out as far as possible."""
+        """Add the valid parts of an answer to the plan; carry out the plan as far as possible."""
         taken: snapshot.Snapshot = call.ask.memo
         if call.solution is not None:
             self._plan.extend(call.solution, taken.items, call, taken.robots)

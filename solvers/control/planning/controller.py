@@ -1,4 +1,4 @@
-"""TA planning: plans the sequence of pods at each station, with their orders and robots."""
+"""TA planning: plans which pods visit each station, in which sequence, and for which orders."""
 
 from __future__ import annotations
 
@@ -41,21 +41,23 @@ _WORTH_A_PLAN = 2
 
 
 class PlanningControl(JointAllocation[PlanningParameters]):
-    """Plans the next visits of every pick station, but commits only to the first steps.
+    """Plans the next visits of pods to every pick station, but carries out only what is due.
 
-    The model is asked, at most once per `buffer_s`, when a pod has reached a pick station, a robot
-    without a pod is free, or an order has arrived while robots rest or a station has more than two
-    free slots. It plans several visits per station, with the orders that each serves: whole orders,
-    which keep their slot until their last pod has come, or separate lines (`split`). Each plan
-    starts from the previous one. Only two kinds of steps are carried out: orders whose first pod is
-    under way get slots, and when a station has less than `horizon_s` of work on pods under way, the
-    nearest free robot brings it its next pod.
+    The model is asked, at most once per `buffer_s`, when a pod has reached a pick station, when a
+    robot without a pod is free, or when an order has arrived while a robot rests or a station has
+    more than two free slots. It plans several visits to each station, and which orders each visit
+    serves: whole orders, which keep their slot until their last pod has come, or, with `split`,
+    single lines. The search for a plan starts from the previous plan. Only two kinds of steps are
+    carried out: an order gets its slot once its first pod is under way, and a station with less
+    than `horizon_s` of work on pods under way is sent its next pod, by the free robot nearest to
+    the pod.
 
-    All other decisions are made by rules. A robot with a pod keeps it at its station while there is
-    work for the pod, takes the pod to a replenishment station where bundles for it wait, or parks
-    it where PSA says. While the stock is below `stock_floor`, some robots (`bundle_share`) bring
-    pods to replenishment stations; while it is below `stock_ceiling`, so do robots that no pick
-    station needs. If the optimiser fails, its start rule makes the plan.
+    All other decisions are made by rules. A robot keeps its pod at the station while there is work
+    for the pod. Then it takes the pod to a replenishment station where bundles for the pod wait or,
+    if there are none, parks the pod where PSA says. While the stock is below `stock_floor`, some
+    robots (`bundle_share`) bring pods to replenishment stations; while the stock is below
+    `stock_ceiling`, so do robots that no pick station needs. If the optimiser fails, its start rule
+    makes the plan.
     """
 
     parameters_model = PlanningParameters
@@ -112,7 +114,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             yield self._to_rest(robot)
 
     def answered(self, call: Call) -> Iterator[Decision]:
-        """Store the plan and carry out what is due; robots without work wait for `decide`."""
+        """Store the plan and carry out what is due, but do not yet send other robots to rest."""
         memo: snapshot.Memo = call.ask.memo
         if call.solution is not None:
             self._plan.take(call.solution, memo, call)

@@ -1,4 +1,4 @@
-"""Forecast of future orders, drawn from those that have arrived so far."""
+"""Forecast of future orders, drawn from the orders known so far."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class ExpectedOrder:
 class ExpectedOrders:
     """Draws future orders from known orders, at the rate at which orders have arrived so far.
 
-    A controller knows neither the arrival process nor the orders it will generate. It knows the
-    orders from before the run (`View.past_orders`), the initial backlog, and the orders that have
-    arrived since.
+    A controller does not know the arrival process or the orders to come. The orders known to it are
+    those from before the run (`View.past_orders`), the initial backlog, and those that have arrived
+    since the start.
 
     Parameters
     ----------
@@ -69,14 +69,15 @@ class ExpectedOrders:
         self._come += 1
 
     def draw(self, horizon_s: float, scenarios: int) -> list[list[ExpectedOrder]]:
-        """Draw future orders one or more times; until an order has arrived, draws are empty.
+        """Draw future orders; until the first order has arrived in the run, all draws are empty.
 
         Orders with a line that no single pod can serve are left out.
 
         Parameters
         ----------
         horizon_s
-            Horizon in s; in each draw, a Poisson-distributed number of orders arrives within it.
+            Horizon in s. A draw contains the orders that arrive within the horizon; their number is
+            Poisson-distributed.
         scenarios
             Number of draws.
 

@@ -28,11 +28,12 @@ class Planned:
     Attributes
     ----------
     first, last
-        Numbers of the visits, in the original plan, at which the item gets its slot and leaves it.
+        Numbers of the first and the last visit that serve the item (the order or line), as counted
+        when the plan was made.
     units
-        Units of the item that each pod serves.
+        For each pod that serves the item, by index, the number of units that it serves.
     begins_with
-        The pod of the item's first visit.
+        The pod of the first visit that serves the item.
     """
 
     item: Item
@@ -58,7 +59,7 @@ class Plan:
     Attributes
     ----------
     pods
-        For each station, the pods of the visits to come.
+        For each station, the pods that are planned but not yet called, in sequence.
     """
 
     def __init__(self, view: View, split_orders: int | None = None) -> None:
@@ -104,11 +105,11 @@ class Plan:
             orders.sort(key=lambda one: one.sequence)
 
     def call(self, station: int) -> Call | None:
-        """Return the question whose answer is the plan of a station; None: the start rule."""
+        """Return the call that yielded a station's plan; None if the start rule made the plan."""
         return self._call[station]
 
     def keys_of(self, stations: Sequence[int]) -> set[tuple[int, int]]:
-        """Return the keys of the orders, or lines, planned for some stations."""
+        """Return the keys (`Item.key`) of the orders, or lines, planned for these stations."""
         return {one.item.key for station in stations for one in self._orders[station]}
 
     def splitting(self, stations: Iterable[int]) -> Splitting:
@@ -128,8 +129,8 @@ class Plan:
     def due(self, station: PickStation) -> Iterator[AssignOrder | AssignLines]:
         """Yield assignments due now; the caller carries out each before requesting the next.
 
-        An item is due if its first pod is under way. One slot is reserved for items that the pod at
-        the head of the queue serves alone.
+        An order (or line) is due if its first pod is under way. One slot is reserved for orders
+        that need no other pod than the one at the head of the queue.
         """
         waiting = self._orders[station.index]
         if not waiting or not station.active:
@@ -149,11 +150,11 @@ class Plan:
                 yield planned.item.decision(station.index)
 
     def streams(self, pod: int, station: int) -> bool:
-        """Whether this pod alone serves an order, or a line, that waits for a slot of a station."""
+        """Whether an order, or line, that waits for a slot of the station needs only this pod."""
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:
-        """Return how many units the pods under way supply, also to orders without a slot."""
+        """Return the units that pods under way supply, also to planned orders without a slot."""
         view, index = self._view, station.index
         coming = under_way(view, station)
         units = sum(len(task.picks) for task in station.tasks.values())

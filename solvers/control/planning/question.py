@@ -27,11 +27,11 @@ class Question:
     data
         The snapshot.
     start
-        For each station, the pods that the last plan has yet to call, as far as they are available.
+        For each station, the pods of the last plan that are not called yet and are still available.
     method, limits, seed
         Method of the search, its limits and its seed.
     bound_steps
-        Steps of the search for a bound.
+        Number of steps of the search for a lower bound on the objective of every plan.
     """
 
     data: Planning
@@ -48,8 +48,8 @@ def solve(question: Question) -> Answer:
     Returns
     -------
     Answer
-        `pods`: pods to be called for each station, in sequence, padded with -1, shape (S, V);
-        `order_station` and `line_visit` as in the model.
+        `pods`: pods to be called to each of the S stations, in sequence, padded with -1 to V
+        visits, shape (S, V); `order_station` and `line_visit`: as in the model's `Plan`.
     """
     data = question.data
     found = planning.solve(
@@ -73,7 +73,7 @@ def solve(question: Question) -> Answer:
 
 
 def by_rule(question: Question) -> Mapping[str, Any]:
-    """Plan by the start rule, after a failure; return values as in `Answer.solution`."""
+    """Return the solution of the start rule, for use when the optimiser has failed."""
     found = solve(replace(question, method="greedy", bound_steps=0)).solution
     assert found is not None
     return found

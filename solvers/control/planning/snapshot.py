@@ -38,10 +38,10 @@ class Memo:
     Attributes
     ----------
     stations
-        The pick stations that are planned.
+        The pick stations for which the question asks for a plan.
     items
-        The waiting order, or line of an order that may be split, behind each order index; None for
-        open orders, and for future ones.
+        What each order index stands for: a waiting order, or, if that may be split, one of its
+        lines. None for open orders and for future ones.
     expected
         Index of the first future order.
     lines, order_of
@@ -134,18 +134,19 @@ def ask(
 ) -> Ask[Question] | None:
     """Return a question about the next plan; None if there is nothing to plan.
 
-    Waiting orders that stock cannot serve, and items planned for other stations, are omitted.
+    Waiting orders that stock cannot serve are omitted, and so are orders, or lines, that are
+    planned for stations other than `stations`.
 
     Parameters
     ----------
     stations
-        The stations to plan.
+        The stations whose next visits are to be planned.
     plan
         The previous plan, from which the new one starts.
     seed
         Seed of the search.
     expected
-        Future orders, per scenario.
+        Future orders, draw by draw (`ExpectedOrders.draw`). Default: none.
     """
     coming = [under_way(view, station) for station in stations]
     others = [station.index for station in view.pick_stations if station not in stations]

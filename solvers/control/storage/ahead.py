@@ -1,4 +1,4 @@
-"""Base of PSA controllers with models, which plan storage locations for all pods that return."""
+"""Base of PSA controllers that plan storage locations for all returning pods by a model."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ class Ahead(PodStorageAssignment[P]):
 
     When a pod reaches a station, and at most once per `buffer_s`, the optimiser is asked for the
     places of all pods that robots carry to stations or have to store now. Its plan replaces the
-    previous one. Pods without a plan, or whose place is taken, go to the nearest empty place.
+    previous one. Pods for which no place is planned, or whose planned place is no longer empty, go
+    to the nearest empty place.
     """
 
     subscriptions = frozenset({Trigger.POD_AT_STATION})
@@ -46,7 +47,7 @@ class Ahead(PodStorageAssignment[P]):
 
     @abstractmethod
     def question(self, robots: Sequence[Robot]) -> Ask[Any]:
-        """Ask for the places of the pods that robots carry; the memo contains these pods."""
+        """Ask where to store the pods of these robots; the memo of the question lists the pods."""
 
     @abstractmethod
     def places(self, call: Call) -> Sequence[int]:
@@ -57,7 +58,7 @@ class Ahead(PodStorageAssignment[P]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Ask the optimiser when the buffer time is over and no answer is pending."""
+        """Ask the optimiser if no answer is pending and the buffer time (`buffer_s`) is over."""
         if not self._buffer.is_over(not self.in_flight):
             return
         robots = [robot for robot in self.view.robots if _will_store(robot)]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 
 def bands(values: NDArray[np.float64], count: int) -> NDArray[np.int64]:
-    """Divide things into bands of about equal size, the lowest values first.
+    """Sort things by value, lowest first, and divide them into bands of about equally many things.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ def bands(values: NDArray[np.float64], count: int) -> NDArray[np.int64]:
 
     Returns
     -------
-    The band of each thing, shape (N,), from 0 without gaps; ties are broken by index.
+    Number of the band of each thing, from 0 without gaps, shape (N,); ties are broken by index.
     """
     band = np.empty(len(values), np.int64)
     order = np.argsort(values, kind="stable")
@@ -27,7 +27,7 @@ def bands(values: NDArray[np.float64], count: int) -> NDArray[np.int64]:
 
 
 def means(values: NDArray[np.float64], band: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return the mean of each band.
+    """Return the mean value of the things in each band.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""PSA placement: the best storage locations for all returning pods, by current and later trips."""
+"""PSA placement: stores all returning pods where current and later trips are shortest in total."""
 
 from __future__ import annotations
 
@@ -46,9 +46,9 @@ def solve(question: Question) -> Answer:
 
 
 def worth_looking_at(cost_s: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Return indices of the places that an optimal placement of P pods can use.
+    """Return indices of places that suffice for an optimal placement of the P pods.
 
-    These are, for each pod, the P places with the least cost.
+    They include, for each pod, the P places with the least cost.
 
     Parameters
     ----------
@@ -74,16 +74,18 @@ class PlacementParameters(StorageParameters):
 
 
 class PlacementControl(Ahead[PlacementParameters]):
-    """Weighs the trip of storing each pod against the trips of its expected visits.
+    """Weighs the trip to a storage location against later trips between it and the stations.
 
-    All pods that robots carry are assigned to empty storage locations (linear assignment problem).
+    All pods that robots carry to stations or have to store now are assigned to empty storage
+    locations jointly (linear assignment problem). Later trips are counted for as many visits as a
+    pod is expected to make within the horizon.
     """
 
     parameters_model = PlacementParameters
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.storage.placement",)
 
     def question(self, robots: Sequence[Robot]) -> Ask[Question]:
-        """State the assignment problem, with the places that an optimal assignment may use."""
+        """State the assignment problem, with places that suffice for an optimal assignment."""
         empty = self.view.storage.is_empty.nonzero()[0]
         pods = [robot.pod for robot in robots]
         travel_s = self.ways.storing_s(robots)[:, empty]

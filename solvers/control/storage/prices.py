@@ -1,4 +1,4 @@
-"""PSA prices: travel time plus the price of the storage location for the duration of the stay."""
+"""PSA prices: stores pods where travel time, plus the price of the place for the stay, is least."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ Count = Annotated[int, pydantic.Field(ge=1)]
 
 @dataclass(frozen=True)
 class Question:
-    """The steady state for which prices are computed."""
+    """The problem of the optimal steady state, from which prices are computed."""
 
     data: Zones
     method: str
 
 
 def solve(question: Question) -> Answer:
-    """Compute dual prices; the answer has the attributes of `Prices`."""
+    """Compute dual prices; the values in the answer are the attributes of `Prices`."""
     found = zones.solve(question.data, question.method)
     if found.values is None:
         return answer(found, None)
@@ -65,14 +65,15 @@ class PricesParameters(StorageParameters):
 
 
 class PricesControl(PodStorageAssignment[PricesParameters]):
-    """Prices storage locations (places) by an optimal steady state, and chooses the cheapest.
+    """Computes prices of storage locations (places), and stores each pod where it costs least.
 
-    Every `period_s`, pods are classified by expected visits, and a convex program determines how
-    many pods of each class should be stored in each zone; it includes the delay by congestion. The
-    price of a place, a dual price of this program, is the time that one more place in its zone
-    would save per hour. A pod goes to the empty place with the least sum of the trips there and
-    away, the delay, and the price for the expected duration of its stay. Until the first answer,
-    and after a failure, it goes to the nearest empty place.
+    Places are divided into zones by distance from the pick stations and, every `period_s`, pods
+    into classes by expected visits. A convex program, which includes the delay by congestion,
+    determines how many pods of each class should be stored in each zone in a steady state. The
+    price of a place, a dual price of this program, is the robot time that one more place in its
+    zone would save per hour. A pod goes to the empty place with the least sum of the trips there
+    and away, the delay, and the price times the expected duration of its stay. Until the first
+    answer, and after a failure, pods go to the nearest empty place.
     """
 
     parameters_model = PricesParameters
@@ -89,7 +90,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         self._asked_s = -inf
 
     def next_event_s(self) -> float:
-        """Return the time at which prices are recomputed."""
+        """Return the time at which prices are next recomputed, in s."""
         return max(self._asked_s, 0.0) + self.parameters.period_s
 
     def decide(self) -> Iterator[Ask[Question]]:
@@ -104,7 +105,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         yield Ask(solve, Question(data, self.parameters.method), sizes, pod_class)
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Store the prices; if there are none, the old ones are discarded."""
+        """Store the prices of the answer; if it has none, discard the old prices."""
         self._prices = None
         if call.solution is not None:
             prices = Prices(**{name: np.asarray(value) for name, value in call.solution.items()})

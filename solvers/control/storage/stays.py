@@ -1,4 +1,4 @@
-"""PSA stays: zones for returning pods, chosen by the times at which other pods leave the zones."""
+"""PSA stays: chooses zones for returning pods by when they and stored pods will be fetched."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SERVICE_S = 30.0
 
 @dataclass(frozen=True)
 class Question:
-    """Stays of pods in zones; the first ones are those of the returning pods.
+    """Stays of pods in zones, those of the returning pods first.
 
     Attributes
     ----------
@@ -73,13 +73,14 @@ class StaysParameters(StorageParameters, SearchParameters):
 
 
 class StaysControl(Ahead[StaysParameters]):
-    """Assigns zones to pods by the times at which they and other pods will be fetched.
+    """Chooses zones for returning pods by the times at which they and stored pods will be fetched.
 
-    A returning pod is assumed to be fetched after its expected stay, or after the horizon if that
-    is earlier. A stored pod whose expected stay is shorter than the horizon leaves its zone at the
-    end of that stay; the other stored pods only occupy their places. An integer program chooses the
-    zones so that there is always room and robot time is least. Within its zone, a pod takes the
-    empty place nearest to its station.
+    Storage locations (places) are divided into zones by distance from the pick stations. A
+    returning pod is assumed to be fetched at the end of its expected stay, which is limited to the
+    horizon. A stored pod whose expected stay is shorter than the horizon is assumed to leave its
+    zone at the end of that stay; the other stored pods only occupy their places. An integer program
+    chooses the zones so that no zone is ever overfull and robot time is least. Within its zone, a
+    returning pod takes the empty place nearest to the station at which it is served.
     """
 
     parameters_model = StaysParameters
@@ -98,7 +99,7 @@ class StaysControl(Ahead[StaysParameters]):
         return Ask(solve, question, sizes, [robot.pod for robot in robots])
 
     def places(self, call: Call) -> Sequence[int]:
-        """Assign each pod the nearest empty place of its zone, one after another."""
+        """Assign pods, one by one, to the nearest empty place of their zone; -1 if none is left."""
         assert call.solution is not None
         storage = self.view.storage
         carriers = {robot.pod: robot for robot in self.view.robots if robot.pod >= 0}

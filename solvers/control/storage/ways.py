@@ -49,7 +49,7 @@ class Ways:
         return np.minimum(mean_s, UNREACHABLE_S)
 
     def store_s(self, waypoint: int) -> NDArray[np.float64]:
-        """Return loaded travel times from a waypoint to each place, shape (L,), in s.
+        """Return the loaded travel time from a waypoint to each place, shape (L,), in s.
 
         The time is inf for unreachable places.
         """

@@ -1,4 +1,4 @@
-"""Base of TA controllers with models: when they ask, and the rule used without an answer."""
+"""Base of TA controllers that ask an optimiser: when they ask, and a rule if there is no answer."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class TaskParameters(BufferParameters):
-    """Parameters shared by TA controllers with models."""
+    """Parameters shared by TA controllers that ask an optimiser."""
 
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
     """Maximum number of robots at, or on their way to, one station."""
@@ -48,13 +48,14 @@ P = TypeVar("P", bound=TaskParameters)
 
 
 class Asking(TaskAllocation[P]):
-    """Asks the optimiser what the robots that need a task, and those at rest, should do.
+    """Asks an optimiser what to do with the robots that need a task or are at rest.
 
     The optimiser is asked when a robot needs a task or, for robots at rest, when there is new work,
-    but at most once per `buffer_s`. A rule decides for robots without a valid decision in the
-    answer and, while an answer is pending, for robots with a pod (`rule_meanwhile`): a pod
-    continues at a station that it can serve, or is parked; an empty robot works for the station
-    with work that has the fewest pods under way; ties are broken by travel time.
+    but at most once in `buffer_s` seconds. A rule decides for robots for which the answer contains
+    no valid decision and, with `rule_meanwhile`, also for robots with a pod while an answer is
+    pending. By this rule, a carried pod is brought to a station that it can serve or, if there is
+    none, stored. A robot without a pod brings one to a station with work: the station that has the
+    fewest robots at it or on their way to it, and among several such stations the nearest.
     """
 
     goes_on = True
@@ -67,7 +68,7 @@ class Asking(TaskAllocation[P]):
 
     @abstractmethod
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Any]:
-        """Ask what robots without a task, or at rest, should do."""
+        """Return the question of what to do with robots that need a task or are at rest."""
 
     @abstractmethod
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
@@ -83,7 +84,7 @@ class Asking(TaskAllocation[P]):
     def decide(self, consult: Consult) -> Iterator[Told]:
         """When there is something to decide, ask the optimiser.
 
-        While an answer is pending, decide by the rule for robots with a pod (`rule_meanwhile`).
+        With `rule_meanwhile`, let the rule decide for robots with a pod while an answer is pending.
         """
         self._consult = consult
         if self._buffer.is_over(not self.in_flight and self._has_news()):
@@ -94,7 +95,7 @@ class Asking(TaskAllocation[P]):
                     yield from self._by_rule(robot, consult)
 
     def answered(self, call: Call) -> Iterator[Told]:
-        """Carry out the answer, and decide by the rule for robots without a valid decision."""
+        """Carry out the answer; for robots without a valid decision in it, let the rule decide."""
         consult = self._consult
         if call.solution is not None:
             yield from self.carry_out(call, consult)
@@ -115,7 +116,7 @@ class Asking(TaskAllocation[P]):
     def to_rest(self, robot: Robot) -> Rest:
         """Return the decision to rest at the place that the rest rule chooses.
 
-        If it finds no place, the robot rests where it is.
+        If the rule finds no place, the robot rests where it is.
         """
         place = self._rest.choose(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)

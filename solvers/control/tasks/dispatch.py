@@ -1,4 +1,4 @@
-"""TA dispatch: assigns robots to stations by travel time, or by queues and due times as well."""
+"""TA dispatch: assigns robots to stations by travel times, due times and (optionally) queues."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ Method = Literal["balance", "matching", "greedy"]
 
 @dataclass(frozen=True)
 class Question:
-    """Robots, the tasks of bringing pods to stations, and the method that assigns them."""
+    """Robots, tasks of bringing pods to stations, and the method that assigns robots to tasks."""
 
     data: Balance
     method: str
@@ -70,8 +70,8 @@ class DispatchParameters(CongestionParameters, TaskParameters):
     """Parameters of TA dispatch."""
 
     method: Method = "balance"
-    """Solution method: `matching` considers travel times only, `balance` also queues and due times;
-    `greedy` assigns the tasks of `balance` one after another to the robot that arrives first."""
+    """Solution method: `matching` considers travel and due times, `balance` also queues; `greedy`
+    assigns the tasks of `balance` one after another to the robot that arrives first."""
     pick_value_s: NotNegative = 300.0
     """Value of bringing a pod to a pick station, in seconds of a robot's time: the trip and the
     wait in the queue may take this long."""
@@ -92,11 +92,12 @@ class DispatchControl(Asking[DispatchParameters]):
 
     There are two kinds of tasks. A carried pod can be taken to any station that it can serve.
     A robot without a pod can bring one to a station with work. A station has as many tasks of this
-    kind as there are robots without a pod, but not more than it has open units or waiting bundles,
-    and not more than the number of further robots that may come (`robots_per_station`).
-    With `matching`, total travel time is minimised (linear assignment). With `balance`, waiting
-    behind other pods and lateness of orders count as well (minimum-cost flow). Tasks that are not
-    worth the trip are left out: pods are parked, and robots rest.
+    kind as there are robots without a pod, but not more than it has open requests or waiting
+    bundles, and not more than the number of further robots that may come (`robots_per_station`).
+    With `matching`, the sum of travel time and weighted lateness of orders is minimised (linear
+    assignment). With `balance`, waiting behind other pods counts as well (minimum-cost flow). Tasks
+    that are not worth the trip are left out; a robot without a task stores its pod if it carries
+    one, and otherwise rests.
 
     As PPS chooses the pod only later, the time that a robot needs to bring a pod is estimated as
     the mean over all pods that the station could use. The delay that congestion is expected to
@@ -113,7 +114,7 @@ class DispatchControl(Asking[DispatchParameters]):
         parameters.prepare(view)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
-        """State the assignment as a flow problem."""
+        """State the problem of assigning robots to tasks."""
         empty = [row for row, robot in enumerate(robots) if robot.pod < 0]
         station: list[int] = []
         own: list[bool] = []
@@ -139,7 +140,7 @@ class DispatchControl(Asking[DispatchParameters]):
         return Ask(solve, Question(data, self.parameters.method), sizes, memo)
 
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Bring pods, park those that are not needed, and let the other robots rest."""
+        """Let robots bring pods to stations; those without a task store their pod, or rest."""
         assert call.solution is not None
         memo: Memo = call.ask.memo
         view = self.view

@@ -1,4 +1,4 @@
-"""Jobs: pods that stations could use next, from which routes are made."""
+"""Jobs: pods that stations could use next; TA `routes` makes them the tasks of its routes."""
 
 from __future__ import annotations
 
@@ -65,10 +65,10 @@ class Job:
 def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) -> list[Job]:
     """Choose the next pods of every station, one pod after another.
 
-    The next pod of a station is the one with the largest difference of value and trip time; ties go
-    to the lowest number. At pick stations, the value counts units picked and orders completed
-    beyond those of the pods chosen before; at replenishment stations, it counts bundles. Each pod
-    is chosen only once.
+    The next pod of a station is the one whose value minus trip time is largest; ties go to the pod
+    with the lowest number. The value of a pod counts, at pick stations, the units picked and the
+    orders completed beyond those of the pods chosen before; at replenishment stations, the bundles
+    stored. Each pod is chosen only once, for one station.
 
     Parameters
     ----------

@@ -46,8 +46,8 @@ class Question:
     method
         `lns`, `cp_sat`, `columns` or `greedy`.
     tasks, places
-        For CP-SAT: number of next tasks considered after each pod, and number of places considered
-        for storing the pod before each of these tasks.
+        For CP-SAT: number of tasks considered as the next one after a pod is stored, and, for each
+        pair of such a pod and task, number of places considered for the pod.
     """
 
     data: TaskSequence
@@ -61,8 +61,9 @@ def solve(question: Question) -> Answer:
     """Plan routes; the answer has their first steps.
 
     For each robot, these are the `place` where it stores the pod that it carries, and the first
-    `task` of its route; shape (R,), -1 for none. CP-SAT, which considers only the shortest arcs,
-    and column generation start from the solution of cheapest insertion.
+    `task` of its route; shape (R,), -1 for none. CP-SAT and column generation start from the
+    solution of cheapest insertion. Beyond the trips of this solution, CP-SAT considers only short
+    ones (`Question`).
     """
     data = question.data
     found = sequence.solve(data, "lns" if question.method == "lns" else "greedy", question.limits)
@@ -135,14 +136,16 @@ class RoutesParameters(TaskParameters, SearchParameters):
 class RoutesControl(Asking[RoutesParameters]):
     """Plans routes in which robots store and fetch pods, and lets each robot take the first step.
 
-    The robots are those that need a task, are at rest, are storing a pod, or are being served at a
-    station. Their tasks are to bring to every station the best next pods for it; each is due when
-    the station runs out of work. The objective combines driving, lateness and the value of tasks
-    left undone: a pod is stored where the trip there and on to the next pod is short, not at the
-    nearest place. The plan is renewed whenever a robot needs a task.
+    Routes are planned for the robots that need a task, are at rest, are storing a pod, or have a
+    pod in service at a station. A task is to bring a pod to a station; for every station, there are
+    tasks for the pods that it could best use next. The pod of a task is due when its station has
+    finished the pods before it. The objective combines driving, lateness and the value of tasks
+    left undone. A pod is therefore stored where the trip to the place and on to the next pod is
+    short, which need not be the nearest place. A new plan is made whenever a robot needs a task.
 
     A pod whose station has more work for it stays there. The routes determine pods and places, so
-    PPS and PSA must be `dummy`. Without an answer, pods go to the nearest empty place.
+    PPS and PSA must be `dummy`. A robot with a pod but without a valid decision takes the pod to a
+    station that the pod can serve or, if there is none, to the nearest empty place.
     """
 
     parameters_model = RoutesParameters
@@ -183,7 +186,7 @@ class RoutesControl(Asking[RoutesParameters]):
         return Ask(solve, question, sizes, Memo(planned, again, found, places))
 
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Let robots that need a task take the first step of their route."""
+        """Let the robots that need a task or are at rest take the first steps of their routes."""
         assert call.solution is not None
         memo: Memo = call.ask.memo
         view = self.view

@@ -1,7 +1,7 @@
-"""Verification of answers from the plain fields of a question, without the models.
+"""Verification of answers without the models, from the fields of question and answer alone.
 
 One module per family implements the rules of the problem a second time, with loops instead of
-arrays, and recomputes the value. Nothing here imports `rmfs.solvers.models` or
+arrays, and recomputes the value of the answer. Nothing here imports `rmfs.solvers.models` or
 `rmfs.solvers.control`.
 """
 
@@ -37,8 +37,8 @@ def check(decision: Decision, found: Found) -> float:
     Raises
     ------
     WrongError
-        If there are no values, a rule is broken, the stated objective is wrong, or the stated bound
-        contradicts the value.
+        If the answer has no values, breaks a rule, or states a wrong objective or a bound that
+        contradicts its value.
     """
     if found.values is None:
         raise WrongError("values: missing: the solution contains no answer")

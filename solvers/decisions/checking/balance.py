@@ -1,4 +1,4 @@
-"""Check of balanced dispatch: robots to tasks, with queues and due times."""
+"""Check of the family `balance`: assignment of robots to tasks, with queues and due times."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the sum of travel, lateness, waits in queues, and costs of tasks left out."""
+    """Return the sum of travel, weighted lateness, waits in queues, and costs of tasks left out."""
     robot = values["robot"].tolist()
     within("robot", robot, -1, len(data["arrive_s"]))
     once("robot", (one for one in robot if one >= 0))

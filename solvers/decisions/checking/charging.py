@@ -1,4 +1,4 @@
-"""Check of charging: stays of robots at charging and swap places."""
+"""Check of charging: stays of robots at chargers and swap stations."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ NONE = -1
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Simulate the time slots one by one, and return the cost of the plan.
+    """Follow each robot through the time slots, and return the cost of the plan.
 
-    The cost is that of missing energy, drives, time away from work, and too few robots at work.
+    The cost includes missing energy, drives, time away from work, and too few robots at work.
     """
     group, begin, length = (values[name].tolist() for name in ("group", "begin", "length"))
     cases, slots = data["wanted"].shape

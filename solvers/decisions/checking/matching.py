@@ -1,4 +1,4 @@
-"""Check of matching: robots to tasks."""
+"""Check of matching: assignment of robots to tasks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the sum of travel and costs of tasks left out."""
+    """Return the total travel time plus the costs of tasks left out."""
     robot = values["robot"].tolist()
     travel = data["travel_s"]
     within("robot", robot, -1, len(travel))

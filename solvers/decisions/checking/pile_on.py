@@ -1,4 +1,4 @@
-"""Check of pile-on: orders to slots, pods to stations, robots to pods."""
+"""Check of pile-on: assignment of orders to slots, pods to stations, and robots to pods."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ NONE = -1
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the costs of called pods, robots, empty slots and open units, less the rewards."""
+    """Return the costs of empty slots, open units, and called and fetched pods, less rewards."""
     stations, pods = len(data["slots"]), len(data["stock"])
     slots = [row.nonzero()[0].tolist() for row in values["slot"]]
     covered, prospect = values["line_station"].tolist(), values["prospect"].tolist()

@@ -1,4 +1,4 @@
-"""Check of placement: returning pods to free places."""
+"""Check of placement: assignment of returning pods to free storage locations (places)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the robot time of drives now and of drives expected later."""
+    """Return the robot time for storing the pods now, and for the visits expected later."""
     place = values["place"].tolist()
     within("place", place, 0, len(data["access_s"]))
     once("place", place)

@@ -1,4 +1,4 @@
-"""Check of planning: future visits to each station, and what each serves."""
+"""Check of planning: future visits of pods to each station, and the lines that they serve."""
 
 from __future__ import annotations
 

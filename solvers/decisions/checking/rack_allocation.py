@@ -1,4 +1,4 @@
-"""Check of rack allocation: orders and pods to stations."""
+"""Check of rack allocation: assignment of orders and pods to stations."""
 
 from __future__ import annotations
 

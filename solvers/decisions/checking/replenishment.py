@@ -1,4 +1,4 @@
-"""Check of replenishment: bundles to pods, and these pods to stations."""
+"""Check of replenishment: assignment of bundles to pods, and of these pods to stations."""
 
 from __future__ import annotations
 

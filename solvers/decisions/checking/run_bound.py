@@ -1,4 +1,4 @@
-"""Check of the run bound, an upper bound on units per hour found by a linear program."""
+"""Check of the run bound: an upper bound, by a linear program, on units picked per hour."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TOLERANCE = 1e-9
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the units per hour, after checking that the counts satisfy all inequalities."""
+    """Check that the values satisfy all inequalities, and return the units picked per hour."""
     given = {name: array.tolist() for name, array in values.items()}
     window, robots = float(data["duration_s"]), data["robots"]
     slack = TOLERANCE * max(1.0, window * max(1, robots))

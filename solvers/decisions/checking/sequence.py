@@ -1,4 +1,4 @@
-"""Check of routes: sequences of storing and fetching pods."""
+"""Check of the family `sequence`: routes on which robots store and fetch pods."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SLACK_S = 1e-6
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Follow every route; return the sum of driving, lateness and costs of tasks left out."""
+    """Return the sum of driving, weighted lateness and costs of tasks left out."""
     place, first = values["place"].tolist(), values["robot_place"].tolist()
     places, count = len(data["fetch_s"]), len(place)
     within("place", place, -1, places)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Simulate the visits, and return their number; consecutive visits of one pod count once."""
+    """Simulate the visits, and return their number; consecutive visits of one pod count as one."""
     pods, start = values["pods"].tolist(), values["start"].tolist()
     holds = [set(row.nonzero()[0].tolist()) for row in data["holds"]]
     missing = [set(row.nonzero()[0].tolist()) for row in data["needs"]]

@@ -1,4 +1,4 @@
-"""Check of stays: pods in zones of places over time."""
+"""Check of stays: assignment of stays of pods to zones of storage locations (places)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the robot time that the stays cost; a place is free from when its pod leaves."""
+    """Return the robot time that the stays cost; when a pod leaves, its place is free at once."""
     zone = values["zone"].tolist()
     capacity = data["capacity"].tolist()
     within("zone", zone, 0, len(capacity))

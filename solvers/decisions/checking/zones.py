@@ -1,4 +1,4 @@
-"""Check of zones: classes of pods in zones of places, in the steady state."""
+"""Check of zones: pods of each class per zone of storage locations, in the steady state."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TOLERANCE = 1e-9
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return robot seconds per hour: travel, and delays that grow with the traffic of a zone."""
+    """Return robot time per hour, in s: travel, and delays that grow with the traffic of a zone."""
     standing = values["standing"].tolist()
     pods, places = data["pods"].tolist(), data["places"].tolist()
     rate = data["rate_per_h"].tolist()

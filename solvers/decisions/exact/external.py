@@ -58,7 +58,7 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
     decision
         The question.
     solver
-        A name in `COMMANDS`, `highs`, or a command.
+        `highs`, a name in `COMMANDS`, or a command.
     seconds
         Time limit, in s of wall time.
     where

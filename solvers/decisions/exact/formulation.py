@@ -1,4 +1,4 @@
-"""The exact program of a question, with named columns, and the conversion back to an answer."""
+"""The exact program of a question, with named columns, and conversion of solutions to answers."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Exact:
     factor
         Factor by which the program's objective is multiplied to give the question's value.
     square
-        Cost coefficient of the square of each column, shape (n,); empty if there are none.
+        Cost coefficient of the square of each column, shape (n,); empty if the cost is linear.
     """
 
     program: LinearProgram

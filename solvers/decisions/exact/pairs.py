@@ -1,4 +1,4 @@
-"""Programs of the families that the models solve as assignments, as flows or by Clarabel."""
+"""Programs of the families that the models solve as assignments, as flows, or with Clarabel."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Stated = tuple[LinearProgram, Names, Callable[[Reals], Plain]]
 
 
 def placement(data: Placement) -> Stated:
-    """Assign each pod one place, and each place at most one pod."""
+    """Assign one place to each pod, and at most one pod to each place."""
     cost = data.cost_s
     pods, places = cost.shape
     allowed = np.isfinite(cost)
@@ -39,7 +39,7 @@ def placement(data: Placement) -> Stated:
 
 
 def matching(data: Matching) -> Stated:
-    """Assign each task at most one robot, and each robot at most one task."""
+    """Assign at most one robot to each task, and at most one task to each robot."""
     builder = ProgramBuilder()
     x, left = _robots(builder, data)
     return _named(builder, x, left)
@@ -48,8 +48,8 @@ def matching(data: Matching) -> Stated:
 def balance(data: Balance) -> Stated:
     """Matching with costs of waiting.
 
-    The k-th robot sent to a station waits for the pods already there or on their way, and for k - 1
-    others.
+    The k-th robot sent to a station waits for the pods already there or on their way, and for the
+    k - 1 robots sent before it.
     """
     builder = ProgramBuilder()
     x, left = _robots(builder, data.pairs)
@@ -93,7 +93,7 @@ def _named(builder: ProgramBuilder, x: NDArray[np.int64], left: NDArray[np.int64
 
 
 def zones(data: Zones) -> tuple[LinearProgram, Names, Callable[[Reals], Plain], Reals]:
-    """Distribute pods over zones, with the square of each zone's traffic in the cost."""
+    """Distribute pods over zones; the cost includes the square of each zone's traffic."""
     classes, count = data.visit_s.shape
     builder = ProgramBuilder()
     rate = data.rate_per_h[:, np.newaxis]

@@ -31,9 +31,9 @@ _NAME_ALONE = re.compile(r"^(\s*\d+ \S+)\n", re.MULTILINE)
 def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
     """Read the value of each column from a solution file.
 
-    Supported are files whose lines contain a name followed by a value (HiGHS, SCIP, Gurobi, CBC,
-    GLPK), and the XML of CPLEX. A column that is not named gets the value nearest to 0 within its
-    bounds.
+    Supported are files whose lines contain a name followed by a value (HiGHS, SCIP, Gurobi, CBC),
+    and the XML of CPLEX. A column that the file does not name gets the value nearest to 0 within
+    its bounds.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
 
 
 def answer_of(decision: Decision, stated: Exact, path: Path, by: dict[str, object]) -> Found:
-    """Convert a solver's solution file to an answer, which must be feasible.
+    """Convert a solver's solution file to an answer, and check that the answer is feasible.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def answer_of(decision: Decision, stated: Exact, path: Path, by: dict[str, objec
     path
         The solution file.
     by
-        Description of the solver, for the answer.
+        How the solution was found, for the answer's `by`.
 
     Raises
     ------

@@ -1,14 +1,20 @@
 r"""The routes of robots as a mixed-integer program with times.
 
-The columns state whether a robot without a pod begins with task t (first); whether, after the pod
-of owner o has been stored at place l, task t comes next (onward) or the route ends (last); whether
-task t is left out; and when the pod of task t arrives at its station (arrive). The owner of a pod
-is the robot that carries it now (index r), or the task that brings it (index R + t, for R robots).
-Times of arrival are linked by a large constant M:
+The owner o of a pod is the robot r that carries it now (o = r), or the task u that brings it to a
+station (o = R + u, for R robots). The columns state
+
+- `first`: whether robot r, which carries no pod, begins with task t;
+- `onward`: whether the pod of owner o is stored at place l, and the same robot then does task t;
+- `last`: whether the pod of owner o is stored at place l, and the robot's route ends there;
+- `leave`: whether task t is left undone;
+- `arrive`, `late`: when the pod of task t arrives at its station, and how late it is.
+
+If the owner is a task u, a large constant M links the arrivals of its pod and of the next one:
 
 .. math::
 
-    arrive_t \ge arrive_o + service_o + store_{ol} + fetch_{lt} + bring_t - M (1 - onward_{olt})
+    arrive_t \ge arrive_u + service_u + store_{ul} + fetch_{lt} + bring_t
+        - M (1 - onward_{R+u,l,t})
 """
 
 from __future__ import annotations
@@ -31,7 +37,7 @@ if TYPE_CHECKING:
 def routes(
     data: TaskSequence,
 ) -> tuple[LinearProgram, Names, Callable[[NDArray[np.float64]], Plain]]:
-    """Return the program, the names of its columns, and the conversion to an answer.
+    """Return the program, its column names, and a function that turns column values into an answer.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
-"""MPS and LP files, in which numbers have enough digits to read back as the same double.
+"""MPS and LP files; numbers are written with enough digits to be read back as the same doubles.
 
-A constant of the objective is written as the cost of a column `one` that is fixed at 1, because
-solvers read constants differently. A row with bounds on both sides is written as two rows.
+A constant in the objective is written as the cost of a column `one` that is fixed at 1, because
+solvers differ in how they read constants. A row with two different finite bounds is written
+as two rows.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def write_program(stated: Exact, path: Path) -> None:
 
 
 def write_map(decision: Decision, stated: Exact, path: Path) -> None:
-    """Write which decision each column stands for (`rmfs-decision-map/1`).
+    """Write a file that states for each column which decision it is (`rmfs-decision-map/1`).
 
     Parameters
     ----------

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 ORDERS = {"small": 8, "medium": 16, "real": 32, "double": 64}
-"""Number of orders of a sequencing question: the first in the backlog that can be served."""
+"""Maximum number of orders of a sequencing question, by size of the site."""
 
 SLOTS = {"small": 3, "medium": 6, "real": 6, "double": 6}
-"""Maximum number of orders open at the same time in a sequencing question."""
+"""Maximum number of orders open at the same time in a sequencing question, by size of the site."""
 
 ROBOTS = {
     "small": (2, 3, 4, 5, 6, 7, 8, 9, 10, 12),
@@ -25,16 +25,19 @@ ROBOTS = {
     "real": (15, 20, 24, 26, 30, 35, 45, 60),
     "double": (40, 60, 90, 120),
 }
-"""Numbers of robots in the questions of the family `run_bound`, each for a run of one hour."""
+"""Numbers of robots by size of the site: one `run_bound` question for each, over one hour."""
 
 
 def derived(family: str, size: str, asked: Iterable[Decision]) -> Iterator[Decision]:
     """Derive questions of a family.
 
-    `rack_allocation`: orders, free slots and pods of a pile-on question; a station without a free
-    slot takes one order. `sequencing`: one station and the first orders of the backlog, with the
-    available pods that hold any of the orders' SKUs. `run_bound`: the site of that size, with
-    several numbers of robots (`ROBOTS`).
+    - `rack_allocation`: the orders, free slots and available pods of a pile-on question; a station
+      without a free slot is treated as if it had one.
+    - `sequencing`: one station, the first orders of a pile-on question, and the available pods that
+      hold any of these orders' SKUs.
+    - `run_bound`: the site of the given size; one question for each number of robots in `ROBOTS`.
+
+    Orders that the available pods cannot fill are left out.
 
     Parameters
     ----------
@@ -43,7 +46,7 @@ def derived(family: str, size: str, asked: Iterable[Decision]) -> Iterator[Decis
     size
         As for `drawing.draw`.
     asked
-        Pile-on questions of that size.
+        Pile-on questions drawn at that size; not used for `run_bound`.
     """
     if family == "run_bound":
         yield from _run_bounds(size)

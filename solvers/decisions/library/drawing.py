@@ -1,10 +1,11 @@
 """The questions of the library, drawn from runs by a seeded procedure.
 
-For each size, kind of demand and seed, a site is simulated under a set of controllers that asks
-questions of the family (if there are two such sets, they take turns). The simulated time is divided
-into thirds: early, middle, late. From each third, one question is drawn uniformly from the largest
-tenth (by array entries), because many questions concern only one robot or one slot. `derived` makes
-questions of families that no controller asks.
+For each family, size of site, kind of demand and seed, a run is simulated with a set of controllers
+that asks questions of the family; if there are two such sets, the runs alternate between them. The
+simulated time is divided into thirds: early, middle, late. Of the answered questions of each third,
+only the largest tenth is considered (by number of array entries), because many questions concern
+only one robot or one slot; one question is drawn from this tenth, all with the same probability.
+`derived` makes the questions of those families of which no controller asks any.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ CONTROLLERS: Mapping[str, tuple[str, ...]] = {
     "replenishment": ("stocking",),
     "charging": ("ca-schedule",),
 }
-"""Shipped sets of controllers that ask questions of each family. Seeds alternate between them."""
+"""Shipped sets of controllers that ask questions of each family. Runs alternate between them."""
 
 _PARAMETERS: Mapping[str, Mapping[str, Any]] = {
     "psa-prices": {"controllers.psa.period_s": 60.0},
@@ -106,7 +107,7 @@ _FEW: Mapping[str, Mapping[str, Any]] = {
 
 
 class _Kept(QuestionListener):
-    """Keeps the questions of one family, the largest of each stretch of time."""
+    """Keeps the answered questions of one family, each with its simulated time and its size."""
 
     def __init__(self, family: str, run: Mapping[str, Any]) -> None:
         super().__init__(run)

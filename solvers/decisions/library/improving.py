@@ -1,4 +1,4 @@
-"""Searches for better values and bounds, with more work in every round."""
+"""Searches for better values and bounds of questions, with more work in every round."""
 
 from __future__ import annotations
 
@@ -55,15 +55,17 @@ class Effort:
     Attributes
     ----------
     work
-        Deterministic seconds of each search in the first round; each further round quadruples them.
+        Deterministic seconds of each search in the first round, for methods that count them; for
+        the others see `STEPS`. Each further round quadruples the limits of all methods.
     rounds
         Number of rounds.
     seconds
-        Total wall time, in s.
+        Wall time in s after which no further question is taken up.
     guard_s
-        Wall time after which a search is given up, in s.
+        Wall time in s after which a single search is given up.
     load
-        Load of the machine above which no search is started; infinite: no limit.
+        Load average of the machine above which no question is taken up until the load has fallen;
+        infinite: no limit.
     """
 
     work: float = 1.0
@@ -95,7 +97,7 @@ def improve(
 
     Returns
     -------
-    Number of values and bounds that were improved.
+    Number of improvements of a value or a bound.
     """
     until, count = monotonic() + effort.seconds, 0
     for number in range(effort.rounds):
@@ -111,7 +113,7 @@ def improve(
 
 
 def _urgency(row: Row) -> tuple[float, str, str]:
-    """Order of the questions: those without anything, then small ones first."""
+    """Sort key of the questions: by size, the smallest first, then by family and name."""
     size = {"small": 1.0, "medium": 2.0, "real": 3.0, "double": 4.0}.get(row.size, 5.0)
     return size, row.family, row.question
 

@@ -14,20 +14,20 @@ LOADS = ("backlog", "arrivals")
 
 @dataclass(frozen=True)
 class Site:
-    """A site of a given size, with the runs from which questions are drawn.
+    """A site, with the settings of the runs from which questions are drawn.
 
     Attributes
     ----------
     layout
-        Shipped layout.
+        Name of a shipped layout.
     scenarios
-        Shipped scenario for each kind of demand.
+        Name of a shipped scenario for each kind of demand.
     set
-        Overridden parameters.
+        Parameters of layout and scenario that are changed, with their new values.
     duration_s
-        Simulated time in s.
+        Simulated time of each run, in s.
     seeds
-        Seeds of its runs.
+        Seeds of the runs; each is used with every kind of demand.
     """
 
     layout: str
@@ -57,8 +57,8 @@ SITES: Mapping[str, Site] = {
         (1,),
     ),
 }
-"""The sizes, by robots and pods: 10 and 100; 32 and 428; 45 and 1,200 with 12 pick stations; 90 and
-2,307 with 24."""
+"""The sites by size. Robots and pods: `small` 10 and 100; `medium` 32 and 428; `real` 45 and 1,200,
+with 12 pick stations; `double` 90 and 2,307, with 24 pick stations."""
 
 TWICE: Mapping[str, Mapping[str, Any]] = {
     "backlog": {"scenario.demand.orders": 400, "scenario.replenishment.bundles": 1200},

@@ -2,7 +2,7 @@
 
 `FAMILY/SIZE/NAME.json.gz` is a question, `NAME.solution.json.gz` its best known answer, and
 `best.csv` the table. Values and bounds are entered only by `Library.enter`, which accepts an answer
-only if `checking` does, and refuses a bound that contradicts a known value.
+only if `checking` does, and refuses a value and a bound that contradict each other.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ TABLE = "best.csv"
 LOCK = ".lock"
 OPTIMAL, OPEN = "optimal", "open"
 PROVEN = 1e-4
-"""Relative gap that counts as zero, as CP-SAT rounds costs (for example to 1/1024 s)."""
+"""Relative gap that counts as zero, because CP-SAT rounds costs (for example to 1/1024 s)."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Row:
 
     @property
     def gap(self) -> float:
-        """Difference of value and bound over the larger magnitude; nan if either is missing."""
+        """Relative gap, ``|value - bound| / max(|value|, |bound|)``; nan if either is missing."""
         apart = abs(self.value - self.bound)
         return 0.0 if apart == 0.0 else apart / max(abs(self.value), abs(self.bound))
 
@@ -89,7 +89,7 @@ class Library:
     folder
         Path of the library.
     rows
-        Rows by name of the question.
+        Rows of the table, by name of the question.
     """
 
     folder: Path
@@ -97,7 +97,7 @@ class Library:
 
     @classmethod
     def load(cls, folder: Path) -> Library:
-        """Read the table, and add questions that it does not contain yet.
+        """Read the table, and add a row for each question in the folder that has none yet.
 
         Raises
         ------
@@ -118,29 +118,29 @@ class Library:
         return self.folder / row.family / row.size / f"{row.question}.json.gz"
 
     def answer(self, row: Row, decision: Decision) -> Found | None:
-        """Return the best known answer."""
+        """Return the best known answer; None if there is none."""
         path = _answer(self.path(row))
         return read_solution(decision, path) if path.exists() else None
 
     def enter(
         self, decision: Decision, found: Found | None, by: str, bound: float = math.nan
     ) -> list[str]:
-        """Enter an answer, a bound or both if they are better than the known ones, and save.
+        """Enter an answer and a bound, each if it is better than the known one, and save the table.
 
         Parameters
         ----------
         decision
             A question of the library.
         found
-            The answer; its own bound is ignored.
+            The answer, or None to enter only a bound; the answer's own bound is ignored.
         by
             How answer or bound was found, for the table.
         bound
-            A proven bound.
+            A proven bound. Default: none.
 
         Returns
         -------
-        The names of what was improved: `value`, `bound`.
+        What was improved: `value`, `bound`, both or nothing.
 
         Raises
         ------

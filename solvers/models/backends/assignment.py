@@ -4,10 +4,10 @@ r"""The linear assignment problem on a cost table with at least as many columns 
 
     \min \sum_{ij} c_{ij} x_{ij}, \quad \sum_j x_{ij} = 1, \quad \sum_i x_{ij} \le 1
 
-Dual: :math:`\max \sum_i u_i + \sum_j v_j` over :math:`u_i + v_j \le c_{ij}`, :math:`v \le 0`
-(Burkard, Dell'Amico, Martello: Assignment Problems, chapter 4). Every :math:`v \le 0` gives a bound
-with :math:`u_i = \min_j (c_{ij} - v_j)`. The v derived from an optimal matching gives the best
-bound.
+Dual: :math:`\max \sum_i u_i + \sum_j v_j` subject to :math:`u_i + v_j \le c_{ij}`,
+:math:`v \le 0` (Burkard, Dell'Amico, Martello: Assignment Problems, chapter 4). Every
+:math:`v \le 0` gives a bound, with :math:`u_i = \min_j (c_{ij} - v_j)`. The v derived from an
+optimal assignment gives the best bound.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Assigned(NamedTuple):
     bound
         Proven lower bound on the cost of every assignment.
     work
-        Number of entries read: those of the table, and those compared in each round of the search
-        for the bound. This is the unit of work of the assignment back ends.
+        Deterministic work: the number of entries of the cost table, plus the number of entries that
+        were compared in the search for the bound, over all its rounds.
     """
 
     column: NDArray[np.int64]
@@ -62,7 +62,7 @@ def assign(cost: NDArray[np.float64], solver: Solver = "scipy") -> Assigned | No
 
     Returns
     -------
-    The best assignment, or None if every assignment contains a forbidden pair.
+    The best assignment, or None if there is no assignment without a forbidden pair.
     """
     rows, columns = cost.shape
     if rows > columns:
@@ -82,7 +82,7 @@ def solve_by_assignment(
     objective: Callable[[NDArray[np.int64]], float],
     solver: Solver,
 ) -> Solution[NDArray[np.int64]]:
-    """Solve a model that is a linear assignment.
+    """Solve a model that is a linear assignment problem.
 
     Parameters
     ----------
@@ -97,8 +97,8 @@ def solve_by_assignment(
 
     Returns
     -------
-    The optimal values, or status INFEASIBLE; work is that of `Assigned`, or the number of entries
-    of the table if there is no assignment.
+    The optimal values, or status INFEASIBLE if there is no assignment; the work is then the number
+    of entries of the table, otherwise that of `Assigned`.
     """
     began = perf_counter()
     cost = table()
@@ -116,7 +116,10 @@ def solve_by_assignment(
 
 
 def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
-    """Repeatedly take the cheapest remaining pair; ties go to the lowest indices.
+    """Repeatedly assign the cheapest pair of a row and a column that are both still free.
+
+    Of equally cheap pairs, the one with the lowest row is taken, then the one with the lowest
+    column.
 
     Parameters
     ----------
@@ -148,9 +151,9 @@ def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
 def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> float:
     """Return a lower bound on the cost of every assignment, derived from a given assignment.
 
-    The prices `v` of the columns are the lengths of the shortest alternating paths, which are 0 or
-    negative (Bellman-Ford over the rows); columns without a row have price 0. Any given assignment
-    yields a valid bound, and an optimal one the tight bound.
+    The price v of an assigned column is the length of the shortest alternating path that ends
+    there; it is 0 or negative (Bellman-Ford over the rows). The price of any other column is 0. The
+    bound is valid for any given assignment, and equals the minimum cost if that one is optimal.
 
     Parameters
     ----------
@@ -161,7 +164,7 @@ def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> fl
 
     Returns
     -------
-    The dual value, rounded down.
+    The value of the dual at these prices, rounded down.
     """
     return _dual(cost, column)[0]
 

@@ -21,7 +21,7 @@ V = TypeVar("V")
 
 
 class Backend(Protocol):
-    """The signature of a solver of integer programs, such as `highs.solve` and `cp_sat.solve`."""
+    """The signature of functions that solve integer programs, such as `highs.solve`."""
 
     def __call__(
         self,
@@ -49,7 +49,7 @@ class Formulation(Generic[V]):
     objective, violations
         Functions that give the objective and the violated constraints of the model's values.
     names
-        Function that gives the name and meaning of each column; see `Names`.
+        Function that enters the name and meaning of each column in the `Names` passed to it.
     """
 
     program: LinearProgram
@@ -83,7 +83,8 @@ def solve_by(
 
     Returns
     -------
-    The solver's solution, or the start if the solver found nothing better.
+    The solver's solution; if it is worse than the start, or there is none, its values are replaced
+    by the start.
 
     Raises
     ------
@@ -104,7 +105,7 @@ def solve_by(
 
 
 def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
-    """Return a search's result, with the start as its values if it found nothing as good.
+    """Return the result of a search, with the start as its values if it has none or worse ones.
 
     Parameters
     ----------
@@ -113,7 +114,7 @@ def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
     start
         Feasible values.
     value
-        Objective of these values.
+        Objective of the start.
     """
     if found.found and found.objective <= value:
         return found
@@ -138,14 +139,14 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) 
 
 
 def with_relaxed_bound(backend: Backend) -> Backend:
-    """Wrap a back end: if a limit ends the search, the relaxation's bound is computed as well.
+    """Wrap a back end: if a limit ends its search, the bound of the linear relaxation is computed.
 
-    The better one of the two bounds is reported.
+    The better one of this bound and the back end's own is then reported.
 
     Parameters
     ----------
     backend
-        The solver. The simplex iterations of the relaxation do not count as its work.
+        The solver. The work reported is the solver's alone, without that for the relaxation.
     """
 
     def solve(

@@ -1,10 +1,10 @@
-"""Linear relaxations through cvxpy and Clarabel, compiled once and re-solved.
+"""Linear relaxations through cvxpy and Clarabel, compiled once and solved repeatedly.
 
 A relaxation is compiled for a *pattern*: the positions of the nonzeros of the matrix, and which
 rows have lower and upper bounds. Every number (costs, coefficients, bounds) is a `cvxpy.Parameter`,
-so programs with the same pattern are re-solved without compiling (disciplined parametrised
+so further programs with the same pattern are solved without compiling (disciplined parametrised
 programming). Interior-point duals are inexact; `safe_bound` turns them into a bound that is valid
-for any multipliers.
+however inexact they are.
 """
 
 from __future__ import annotations
@@ -74,14 +74,14 @@ class LinearRelaxation:
 
         Returns
         -------
-        The relaxed point and a safe bound. The bound is valid whatever the solver's final status.
+        The solution of the relaxation, and a bound that is valid whatever the final status.
 
         Raises
         ------
         ModelError
             If the program has another pattern.
         WallGuardError
-            If the wall-clock guard ran out.
+            If the solver took longer than `limits.wall_guard_s`.
         """
         began = time.perf_counter()
         require(
@@ -153,7 +153,7 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS) -> Relaxation:
 
     Returns
     -------
-    The relaxed point and a safe bound.
+    The solution of the relaxation, and a bound as from `LinearRelaxation.solve`.
     """
     began = time.perf_counter()
     relaxation = LinearRelaxation(program)

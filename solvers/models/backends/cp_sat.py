@@ -1,8 +1,8 @@
 """CP-SAT: integer programs, limited by deterministic time.
 
-One worker, a fixed seed and a limit in deterministic seconds make results repeatable, whatever the
-load of the machine. The model is written directly into the solver's protocol buffer, row by row
-from the compressed matrix, in a few microseconds per row.
+One worker, a fixed seed and a limit in deterministic seconds (the solver's own measure of its work)
+make results repeatable, whatever the load of the machine. The model is written directly into the
+solver's protocol buffer, row by row from the compressed matrix, in a few microseconds per row.
 
 CP-SAT uses integers: costs are rounded *down* to multiples of 1/1024 (a power of two, so that
 scaling is exact). As all columns are non-negative, the minimum with rounded costs never exceeds the
@@ -46,14 +46,14 @@ def solve(
     Parameters
     ----------
     program
-        What to solve: all columns whole and non-negative, all coefficients and finite row bounds
-        whole; costs may be fractions.
+        What to solve. All columns must be integer and non-negative; all coefficients and all finite
+        bounds, of columns and of rows, must be whole numbers. Costs may be fractions.
     limits
         ``deterministic_s`` limits the search; ``gap`` is relative. Default: to optimality.
     seed
         Seed of the solver. Default 0.
     start
-        A feasible point to start from, shape (n,). Default: none.
+        A feasible point to start from, one value per column. Default: none.
     presolve
         Whether the solver simplifies the program first. Under a short limit, a program with a tight
         relaxation is better solved without presolve. Default: yes.
@@ -128,7 +128,7 @@ def run(solver: cp_model.CpSolver, model: cp_model.CpModel) -> CpSolverStatus:
     Raises
     ------
     KeyboardInterrupt
-        If the user interrupts the search; the search is stopped first.
+        If the user interrupts the search; raised after the search has stopped.
     """
     if threading.current_thread() is not threading.main_thread():
         return solver.solve(model)
@@ -142,7 +142,7 @@ def run(solver: cp_model.CpSolver, model: cp_model.CpModel) -> CpSolverStatus:
 
 
 def check_guard(solver: cp_model.CpSolver, status: CpSolverStatus, limits: Limits) -> None:
-    """Raise an error if the wall-clock guard rather than counted work ended the search.
+    """Raise an error if the search was ended by the wall-clock guard, not by a deterministic limit.
 
     Parameters
     ----------

@@ -68,7 +68,7 @@ class Flow(NamedTuple):
     bound
         Proven lower bound on the cost of every flow.
     work
-        Number of arcs, the unit of work of the back end.
+        Work of the back end, counted in arcs: the number of arcs of the network.
     """
 
     units: NDArray[np.int64]
@@ -79,8 +79,8 @@ class Flow(NamedTuple):
 def min_cost_flow(network: Network) -> Flow | None:
     """Find a minimum-cost flow with OR-Tools' cost-scaling push-relabel algorithm.
 
-    Costs are rounded to millionths (coarser if they are huge). The solver is exact for the rounded
-    costs; the bound is valid for the unrounded ones.
+    Costs are rounded to millionths, or more coarsely if a cost exceeds about a million. The solver
+    is exact for the rounded costs; the bound is valid for the unrounded ones.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def flow_bound(network: Network, potential: NDArray[np.float64]) -> float:
 
     Returns
     -------
-    The dual value, rounded down.
+    The bound (the dual objective at these potentials), rounded down.
     """
     tail, head = potential[network.tail], potential[network.head]
     saved = np.minimum(0.0, network.cost + tail - head) * network.capacity

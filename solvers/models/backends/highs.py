@@ -1,8 +1,9 @@
 """HiGHS: linear and mixed-integer programs, limited by nodes or iterations.
 
-On one thread, HiGHS is deterministic. Its limit is the number of nodes; as the work per node
-varies, `Outcome.work` counts simplex iterations instead. The bound of a mixed-integer program comes
-from floating-point LPs, so it is lowered by the solver's own tolerance.
+On one thread, HiGHS is deterministic. A mixed-integer program is limited by its number of nodes; as
+the work per node varies, `Outcome.work` counts simplex iterations instead. The bound that `solve`
+returns comes from floating-point LPs, so it is lowered by the relative tolerance
+`NUMERICAL_TOLERANCE`.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def solve(
     seed
         Seed of the solver's tie-breaks. Default 0.
     start
-        A feasible point to start from, shape (n,). Default: none.
+        A feasible point to start from, one value per column. Default: none.
 
     Returns
     -------
@@ -81,12 +82,12 @@ def relax(
     limits
         ``iterations`` limits the simplex method. Default: none.
     interior
-        Whether to use the interior-point method instead of the simplex method: from 10,000 columns
-        on it takes a fraction of the time, and the bound is equally safe. Default: no.
+        Whether to use the interior-point method instead of the simplex method. With 10,000 columns
+        or more, it takes a fraction of the time; the bound is equally safe. Default: no.
 
     Returns
     -------
-    The relaxed point and a safe bound, as from `clarabel.relax`.
+    The solution of the relaxation, with a bound that is valid despite rounding (`safe_bound`).
 
     Raises
     ------

@@ -66,7 +66,8 @@ class Outcome:
         objective
             The model's own objective function.
         build_s
-            Seconds spent before the back end was called; they are added to `build_s` and `wall_s`.
+            Seconds spent before the back end was called; they are added to the solution's `build_s`
+            and `wall_s`.
 
         Returns
         -------
@@ -96,14 +97,15 @@ class Relaxation:
         Value of each column, possibly fractional, feasible within the solver's tolerance; None if
         the solver found no point.
     multipliers
-        Dual value of each row, positive where a lower bound is binding; zeros if the solver gave
-        none.
+        Dual value of each row, positive where the row's lower bound is binding; zeros if the solver
+        gave none.
     bound
-        Lower bound of the program and of its integer version, rounded to the safe side.
+        Lower bound on the objective of the relaxation, and so of the integer program, rounded down.
     work
         Iterations of the back end.
     build_s, wall_s
-        Seconds for setting parameters (and compiling, the first time), and for the whole call.
+        Wall-clock seconds for passing the program to the solver (compilation, if any, included),
+        and for the whole call.
     """
 
     x: NDArray[np.float64] | None

@@ -23,15 +23,15 @@ _UNIT = float(np.finfo(np.float64).eps)
 
 
 def safe_bound(program: LinearProgram, multipliers: NDArray[np.float64]) -> float:
-    """Return a lower bound on a program (and its integer version) from row multipliers.
+    """Return a lower bound on the objective of a program, computed from row multipliers.
 
     Parameters
     ----------
     program
-        The program; integrality is ignored.
+        The program. Integrality is ignored, so the bound holds with and without it.
     multipliers
-        Multiplier of each row, positive where a lower bound is binding. Any values give a valid
-        bound; the dual solution gives a tight one.
+        Multiplier of each row, positive where the row's lower bound is binding. Any values give a
+        valid bound; those of the dual solution give a tight one.
 
     Returns
     -------

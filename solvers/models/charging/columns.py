@@ -26,7 +26,8 @@ class Columns:
     Parameters
     ----------
     robot, group, begin, length
-        The stays, sorted by robot, shape (N,); the first row of each robot means "no stay".
+        Robot, group of places, first time slot and number of time slots of each stay, sorted by
+        robot, shape (N,). The first row of each robot means "no stay".
     cost_s
         Cost of each stay, excluding the cost of missing robots, shape (N,).
     away, used
@@ -46,11 +47,11 @@ class Columns:
     first: Integers
 
     def plan(self, rows: Integers) -> ChargePlan:
-        """Return the plan in which each robot makes the stay of the given row, shape (R,)."""
+        """Return the plan in which each robot makes the stay in its row; `rows` has shape (R,)."""
         return ChargePlan(self.group[rows], self.begin[rows], self.length[rows])
 
     def rows(self, plan: ChargePlan) -> Integers:
-        """Return the row of each robot's stay in a feasible plan, shape (R,)."""
+        """Return the row of the stay that each robot makes in a feasible plan, shape (R,)."""
         found = [
             np.flatnonzero(
                 (self.group[low:high] == plan.group[robot])

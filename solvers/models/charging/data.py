@@ -1,8 +1,8 @@
-r"""The problem: robots with batteries, places that charge or swap them, and demand for robots.
+r"""The problem: robots, places where batteries are charged or swapped, and demand for robots.
 
-Time is divided into T time slots. Each robot makes at most one stay at a place, given by the group
-g of the place, the first time slot b and the number n of time slots. During its stay the robot is
-away from work.
+Time is divided into T time slots. Each robot makes at most one stay at a place; during its stay it
+is away from work. A stay is given by the group g of its place (a group consists of identical
+places), its first time slot b and its number n of time slots.
 
 .. math::
 
@@ -10,16 +10,17 @@ away from work.
     + idle \cdot slot \cdot slots_r\bigr)
     + (1 - idle) \frac{slot}{Q} \sum_{q,t} \bigl(wanted_{qt} - (R - away_t)\bigr)^+
 
-:math:`end_r` and :math:`low_r` are the final and the lowest level of robot r, :math:`way_{rg}` is
-its drive back from a place of group g, :math:`slots_r` is its number of time slots away from work,
-:math:`away_t` is the number of robots away in time slot t, and R is the number of robots. The other
-symbols are fields of `Charging`.
+:math:`end_r` and :math:`low_r` are the final and the lowest battery level of robot r,
+:math:`way_{r g_r}` is the time of its drive back from its place (0 without a stay), :math:`slots_r`
+is its number of time slots away from work, :math:`away_t` is the number of robots away in time slot
+t, and R is the number of robots. The other symbols, except lost, are fields of `Charging` (without
+the ending `_s`).
 
 Missing robot time is weighed against energy: :math:`lost(l) = worth\,(1 - l - \kappa (l - l^2))` is
-the robot time needed to fill a battery whose final level is l; :math:`\kappa` makes energy worth
-more in an empty battery than in a full one. Batteries fill with constant power up to a bend, and
-from there on with power that falls linearly to 0; a swap takes one time slot. A group consists of
-identical places. The demand for robots is given as Q equally likely cases.
+the worth, in robot time, of the energy that a battery with final level l lacks; :math:`\kappa`
+makes energy worth more in an empty battery than in a full one. A battery is charged with constant
+power up to the level `taper_from`; above it, the power falls linearly with the level, to 0 in a
+full battery. A swap takes one time slot. The demand for robots is given as Q equally likely cases.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 AWAY = -1
-"""Group of a robot that has no stay."""
+"""Group of a robot that has no stay: it is away from all places."""
 
 
 @dataclass(frozen=True)
@@ -52,15 +53,17 @@ class Charging:
     ready
         First time slot in which each robot may leave its work, shape (R,).
     waits
-        Whether a robot is already on its way to a place, shape (R,): it is away from work until its
-        stay is over, and its battery does not drain.
+        Whether a robot is already on its way to a place, waits there or swaps its battery, shape
+        (R,). Until its stay is over (without a stay: in all time slots), such a robot is away from
+        work and its battery does not drain.
     here
-        Group of the place where a robot is being charged, or `AWAY`, shape (R,). A stay of such a
-        robot continues there from time slot 0; without a stay, the robot leaves now.
+        Group of the place where a robot is being charged, or `AWAY` if it is not being charged,
+        shape (R,). A robot that is being charged either leaves now or has a stay, which continues
+        there from time slot 0.
     way_s
-        Time from each robot to a place of each group, shape (R, G), in s; +inf where it may not go.
-        A stay begins with this drive, unless the robot is already there. The cost of a stay also
-        includes the drive back, which takes the same time.
+        Time from each robot to a place of each group, shape (R, G), in s; +inf if the robot may not
+        go there. A stay begins with this drive, unless the robot is already there. The cost of a
+        stay includes the drive back, which takes the same time.
     places
         Number of robots that each group can hold in each time slot, shape (G, T).
     gain
@@ -82,14 +85,15 @@ class Charging:
     full
         Level that counts as full. Default 0.98.
     least
-        Level below which no robot should fall. Default 0.15.
+        Level below which no battery should fall. Default 0.15.
     short_s
-        Penalty for falling below `least`, in s per unit of the level. Default 36000.
+        Penalty in s for a level below `least`, multiplied by the difference of the two levels.
+        Default 36000.
     idle
-        Cost of time away from work when the robot is not needed, as a share of its cost when the
-        robot is needed, from 0 to 1. Default 0.
+        Cost of a time slot away from work if the robot is not needed, as a share of the cost if it
+        is needed, from 0 to 1. Default 0.
     curve
-        :math:`\kappa`, from 0 to 1. Default 0.2.
+        :math:`\kappa` in the objective of this module, from 0 to 1. Default 0.2.
 
     Raises
     ------
@@ -179,8 +183,8 @@ class Charging:
         Parameters
         ----------
         level, gain, slots
-            Levels before, share of the capacity charged per time slot at constant power, and number
-            of time slots; arrays that broadcast.
+            Levels before charging, share of the capacity charged per time slot at constant power,
+            and number of time slots; arrays that broadcast.
         """
         bend = self.taper_from
         steady = level + gain * slots
@@ -196,7 +200,7 @@ class Charging:
         return reached
 
     def lost_s(self, level: Floats) -> Floats:
-        """Return the robot time needed to fill batteries from these levels, in s."""
+        """Return the worth of what batteries at these levels lack, in s of robot time."""
         lost: Floats = self.worth_s * (1 - level - self.curve * (level - level**2))
         return lost
 
@@ -231,9 +235,9 @@ class ChargePlan:
     Parameters
     ----------
     group
-        Group of each robot's stay, or `AWAY`, shape (R,).
+        Group of the place of each robot's stay; `AWAY` for robots without a stay, shape (R,).
     begin, length
-        First time slot and number of time slots of the stay, shape (R,); 0 for robots without one.
+        First time slot and number of time slots of the stay, shape (R,); 0 without a stay.
     """
 
     group: Integers

@@ -1,12 +1,14 @@
-r"""Robots choose stays in turn, lowest battery first, until none would change its choice.
+r"""Robots choose stays in turn, lowest battery first, until no choice changes or rounds run out.
 
 The bound puts a price :math:`\lambda_t` on absence. Let :math:`m_t(a)` be the cost of missing
 robots in time slot t if a robots are away; then
 
 .. math:: m_t(away_t) \ge \lambda_t\, away_t + \min_a \bigl(m_t(a) - \lambda_t a\bigr)
 
-for any price. This separates the robots if the limits of places are ignored: each can choose its
-stay independently. The price of a time slot is the marginal cost of absence in the plan found.
+for any price. With the right-hand side as the cost, and without the limits `places`, each robot can
+choose its stay independently of the others. The prices are the marginal costs of absence in the
+plan found: of one robot more, of one robot fewer, or the mean of the two; the best of the three
+bounds is returned.
 """
 
 from __future__ import annotations

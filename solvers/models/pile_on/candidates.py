@@ -1,12 +1,13 @@
 """Candidate pairs: of pods and stations, orders and stations, robots and pods.
 
 The *price* of a pod at a station is the cost of calling it, divided by the number of order lines
-that it could serve alone; the price of an order at a station is the total price of the cheapest
-pods for its missing lines. Pruning keeps the cheapest few pods per wanted SKU and station, the
-cheapest few orders per station, the cheapest few stations per order, and the nearest few robots per
-pod. Versatile pods are cheap and appear for many SKUs, so the union stays small. The loss from
-pruning is measured in `tests/benchmarks/test_models_pile_on.py`; a bound of the pruned model is not
-valid for the full model (`relaxation.bound` computes a valid one).
+that it could serve alone. The price of an order at a station is the total price of the cheapest
+pods for the lines that inbound pods do not cover, less the worth of the order. Pruning keeps the
+cheapest few pods per wanted SKU and station, the cheapest few orders per station, the cheapest few
+stations per order, and the nearest few robots per pod. A pod that could serve many lines is cheap
+and is kept for many SKUs at once, so few pods remain. The loss from pruning is measured in
+`tests/benchmarks/test_models_pile_on.py`; a bound of the pruned model is not valid for the full
+model (`relaxation.bound` computes a valid one).
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class Candidates:
             object.__setattr__(self, field, flags(field, getattr(self, field), (None, None)))
 
     def including(self, values: Assignment) -> Candidates:
-        """Add the pairs that a decision uses, so that a solver can start from it.
+        """Return these pairs plus those of a decision, so that a solver can start from it.
 
         Parameters
         ----------
@@ -67,19 +68,19 @@ class Candidates:
 
 @dataclass(frozen=True)
 class Pruning:
-    """How many candidates of each kind to keep: more allow better solutions, but take more time.
+    """How many candidates of each kind to keep; more can improve solutions, but take longer.
 
     Parameters
     ----------
     pods_per_sku
         Pods per wanted SKU and station. Default 4.
     orders_per_slot
-        Orders per free slot of a station. Default 64: of 150 recorded inputs, one in twenty then
-        has a worse solution than without this limit; with 16, half of them do, by 21 s of robot
-        time on average.
+        Orders per free slot of a station. Default 64: for one in twenty of 150 recorded inputs, the
+        solution is worse than without this limit. With 16 it is worse for half of them, by 21 s of
+        robot time on average.
     stations_per_order
-        Stations that each order keeps in any case; applies only if more stations than this have
-        free slots. Default 4.
+        Cheapest stations kept for each order, even if it is not among their cheapest orders.
+        Applies only if more stations than this number have free slots. Default 4.
     robots_per_pod
         Robots per pod. Default 4.
 
@@ -100,7 +101,7 @@ class Pruning:
 
 
 def everything(data: PileOn) -> Candidates:
-    """Return all pairs that can be useful; nothing is lost.
+    """Return all pairs that can be useful, without pruning.
 
     Parameters
     ----------
@@ -109,8 +110,8 @@ def everything(data: PileOn) -> Candidates:
 
     Returns
     -------
-    Available pods that hold a SKU wanted at the station, free robots for those pods, and every
-    order wherever there are slots.
+    Each station with the available pods that hold a SKU wanted there and, if it has free slots,
+    with all orders; each of these pods that needs a robot, with all free robots.
     """
     on_order = np.zeros(data.skus, dtype=np.bool_)
     on_order[data.line_sku] = True
@@ -185,7 +186,7 @@ def _best_places(data: PileOn, price: Floats, keep: Pruning) -> Flags:
 
 
 def call_price(data: PileOn) -> Floats:
-    """Cost of calling a pod per line that the pod could serve alone, shape (P, S).
+    """Cost of calling a pod, divided by the number of lines it could serve alone, shape (P, S).
 
     The cost includes the way of the nearest free robot to the pod.
 
@@ -198,10 +199,10 @@ def call_price(data: PileOn) -> Floats:
 
 
 def whole_price(data: PileOn) -> Floats:
-    """Minimum price of the pods that complete each order at a single station, shape (O,).
+    """Price of the pods that complete each order at its cheapest single station, shape (O,).
 
     A line costs nothing if stock left on pods under way covers it, and otherwise the lowest
-    `call_price` of a pod that holds its SKU. Infinite if there is no such pod for some line.
+    `call_price` of an available pod that holds its SKU; infinite if no available pod does.
 
     Parameters
     ----------

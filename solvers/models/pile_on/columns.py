@@ -1,8 +1,9 @@
 """The columns of the pile-on program: their costs, and their conversion into a decision.
 
-Columns exist only for candidate pairs for which the pods that may come can cover something. In
+The letters of the columns are those of `program`. Pairs have columns only if they are candidates,
+and a line has a column z at a station only if the pods that may come there could cover it. In
 `Variant.WHOLE` the column z of a line *is* the column y of its order, so each family of rows is
-written once for all variants.
+written once for all variants; y exists only where all lines of the order could be covered.
 """
 
 from __future__ import annotations
@@ -30,11 +31,11 @@ class Columns:
     pod, station, call
         Pod, station and column x of each call.
     order, at, slot, prospect
-        Order, station and columns y and g of each *place*, that is, each pair of order and station;
-        `prospect` is empty if prospects are not rewarded.
+        Order, station and columns y and g of each *place*, that is, of each pair of an order and a
+        station where it may go; `prospect` is empty if prospects are not rewarded.
     line, place, cover
-        Line, index of the place of its order, and column z of each line that could be covered at
-        this place; z is y in `Variant.WHOLE`.
+        Line, index of a place of its order, and column z, for each line and each place at which the
+        line could be covered; z is y in `Variant.WHOLE`.
     complete, started
         Columns e and w of each order, empty in variants that do not need them.
     short_station, short_sku, short
@@ -208,7 +209,7 @@ def encode(data: PileOn, columns: Columns, values: Assignment, size: int) -> Flo
 
 
 def coverable_lines(data: PileOn, candidates: Candidates) -> Flags:
-    """Whether the pods that may come could cover a line at a station, shape (L, S).
+    """Whether the pods inbound or callable to a station could cover a line there, shape (L, S).
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ def solve(
         As for every method.
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used.
-        Default: all. If only some may be used, the bound is -inf.
+        Default: all. If candidates are given, the bound is -inf.
     strengthen
         Whether to add the strengthening rows (8) of `program`. Default: yes.
 

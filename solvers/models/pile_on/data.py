@@ -1,9 +1,9 @@
 r"""The input of the pile-on models: one snapshot of orders, pods, stations and robots.
 
 Sets: stations s, orders o with lines l (SKU k(l), units q_l), pods p with stock a_pk, robots r.
-Earlier decisions are part of the data: orders at stations with open demand, pods on their way,
-robots that carry or fetch a pod. The stock of the pods on their way to station s first serves the
-open demand of the orders already there, :math:`open_{sk}` units of SKU k:
+Earlier decisions are part of the data: the open demand of orders already at stations, pods on their
+way, and robots that carry or fetch a pod. The stock of the pods on their way to station s first
+serves the open demand there, :math:`open_{sk}` units of SKU k; a surplus or a shortage remains:
 
 .. math::
 
@@ -29,15 +29,15 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class PileOn:
-    """Input for assigning orders and pods to stations (POA, PPS) and, if given, robots (TA).
+    """Input for assigning orders and pods to stations (POA, PPS), optionally robots to pods (TA).
 
     Parameters
     ----------
     slots
         Free order slots per station, shape (S,).
     line_order, line_sku, line_units
-        The lines of the orders to be assigned, sorted by order, then SKU, shape (L,). Orders are
-        numbered 0..O-1, and each has at least one line.
+        Order, SKU and units of each line of the orders to be assigned, shape (L,). Lines are sorted
+        by order, then SKU; orders are numbered 0..O-1, and each has at least one line.
     stock
         Units per pod and SKU that no order has reserved yet, shape (P, K). Only SKUs with demand
         need a column.
@@ -46,15 +46,18 @@ class PileOn:
     available
         Whether a pod may be called, shape (P,).
     inbound
-        Station a pod is already assigned to, or -1, shape (P,). Such a pod is not called again.
+        Station that a pod is already assigned to, shape (P,); -1: none. A pod that is assigned to a
+        station is not called again.
     open_units
         Units per station and SKU that the orders already there still need but have not reserved on
         any pod, shape (S, K).
     fetch
-        Cost for each robot to reach each pod, shape (R, P). None: robots are not decided here.
+        Cost for each robot to reach each pod, shape (R, P). Default: none, so that no robots are
+        assigned.
     robot_pod
-        Pod a robot is bound to, or -1 if the robot is free, shape (R,). A bound robot fetches no
-        other pod; its pod, if available, needs no other robot.
+        Pod that a robot is bound to (carries or fetches), or -1 if the robot is free, shape (R,). A
+        bound robot fetches no other pod; if its pod is called, the pod needs no other robot.
+        Default: all robots are free.
     worth
         Extra reward for giving an order its (first) slot, shape (O,), for example for its age or
         due time. Default: none.
@@ -64,7 +67,7 @@ class PileOn:
     variant
         How orders may be covered. Default: whole.
     weights
-        The weights of the objective. Default: those of M1G.
+        The weights of the objective. Default: those of the model M1G (Jiao et al. 2025).
 
     Raises
     ------
@@ -166,7 +169,7 @@ class PileOn:
 
     @property
     def robots(self) -> int:
-        """Number of robots R; 0 if robots are not decided here."""
+        """Number of robots R; 0 if no robots are assigned (no `fetch`)."""
         return 0 if self.fetch is None else int(self.fetch.shape[0])
 
     @cached_property

@@ -1,12 +1,13 @@
 """Pod match: repeatedly makes the pod call with the greatest gain over all stations.
 
-Orders are placed wherever stock already covers them. Then the pod (or the set of pods for one
-order) with the greatest gain over all stations is called, and its station is filled; this is
-repeated. *Prospects* are orders that get no slot but could be filled from the pods that come. When
-the slots are full, pods whose prospects are worth more than their call costs are called in the same
-way. Gains only decrease as orders and pods go to other stations, so a station is scored again only
-when it heads the list sorted by gain (lazy evaluation). Deterministic: ties go to the lower station
-and pod.
+First, orders are *placed* (get a slot) wherever the stock of inbound pods covers them. Then the pod
+(or the set of pods for one order) with the greatest gain over all stations is called, and the free
+slots of its station are filled; this is repeated until no call has a gain. *Prospects* are orders
+that get no slot but could be filled from the pods that come. Finally, pods are called for further
+prospects in the same way, if the value of these prospects exceeds the cost of the call. A station
+is scored again only when it heads the list sorted by gain (lazy evaluation): its gain is assumed
+not to rise while orders and pods go to other stations. Deterministic: ties go to the station, then
+to the pod, with the lower number.
 """
 
 from __future__ import annotations
@@ -87,13 +88,13 @@ def fill_slots(partial: PartialAssignment, most: int | None = None) -> None:
 def add_prospects(partial: PartialAssignment, most: int | None = None) -> None:
     """Add prospects that leftover stock covers, then call pods for further prospects.
 
-    A prospect is an order without a slot that the pods of a station could serve in full. A pod is
-    called if its prospects are worth more than the call costs.
+    A prospect is an order that gets no slot although the pods of a station could serve it in full.
+    A pod is called if the value of its prospects exceeds the cost of the call.
 
     Parameters
     ----------
     partial
-        A partial assignment with its slots filled.
+        A partial assignment that `fill_slots` has completed.
     most
         Maximum number of calls. Default: no limit.
     """

@@ -5,14 +5,15 @@ paper); then call the pod p, with its nearest robot r, that minimises (steps PS 
 
     K(p) = -complete * (orders p would complete) + travel * (d_rp + d_ps)     (eq. 23)
 
-with d_rp from robot to pod and d_ps from pod to station; repeat until no call is useful. Where no
-single pod completes an order, `SETS` sets of pods are sampled, each covering a random order, and
-the best set is improved by `SEARCHES` local searches, each of which exchanges one pod; these are
-the paper's l1 = 10 and l2 = 3. Our choices where the paper leaves details open: stations are
-processed in ascending order of the travel of their inbound pods; orders with the greatest `worth`
-come first, then those with the fewest units. The paper does not consider shortages of orders
-already placed, and has no weights `unit` and `visit`; here K contains these two weights, and each
-unit of shortage that a pod eases lowers K by `open_unit`.
+with d_rp from robot to pod and d_ps from pod to station; repeat both until no call is useful. If no
+single pod completes an order (or eases a shortage), `SETS` sets of pods are sampled, each covering
+a random order, and the best set is improved by `SEARCHES` local searches, each of which exchanges
+one pod. `SETS` and `SEARCHES` are the paper's l1 = 10 and l2 = 3. Our choices where the paper
+leaves details open: stations are processed in ascending order of the total travel of their inbound
+pods; orders are placed by decreasing `worth` and, if equal, by increasing units. The paper does not
+consider units that orders already placed still lack (shortages), and has no weights `unit` and
+`visit`; here K contains these two weights, and each unit of shortage that a pod eases lowers K by
+`open_unit`.
 """
 
 from __future__ import annotations

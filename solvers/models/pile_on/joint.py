@@ -1,8 +1,8 @@
-"""The method for sites of realistic size: start from a heuristic, improve exactly, and bound.
+"""The method for sites of realistic size: a heuristic decision, improved by CP-SAT, with a bound.
 
-Controllers use this method. Pod match (`greedy`) looks at all pairs; CP-SAT then re-optimises a few
-stations at a time over pruned pairs, within its deterministic limit. The bound is valid for the
-full input.
+Controllers use this method. Pod match (`greedy`) looks at all pairs; CP-SAT then re-optimises two
+stations at a time over the pairs that pruning keeps, within the limit `deterministic_s`. The bound
+is valid for the full input.
 """
 
 from __future__ import annotations
@@ -37,14 +37,15 @@ def solve(
     pruning
         How many candidates CP-SAT is given. Default: the defaults of `Pruning`.
     bound_steps
-        Number of steps of `prices.bound`; 0 gives a weaker bound. Default `prices.ITERATIONS`.
+        Number of steps of `prices.bound`; with 0, the bound is that of the initial prices. Default
+        `prices.ITERATIONS`.
 
     Returns
     -------
-    A feasible decision, never worse than pod match or the start, with a bound of the full input.
-    Its work is measured in deterministic seconds of CP-SAT, whose last run may exceed the limit.
-    The effort of building the programs, and that of pod match, are counted in `built`; the steps
-    for the bound are not counted.
+    A feasible decision, never worse than pod match or the start, with a bound that is valid for the
+    full input. `work` is measured in deterministic seconds of CP-SAT, whose last run may exceed the
+    limit. `built` counts the effort of building the programs and of preparing pod match. The steps
+    for the bound are counted nowhere.
     """
     began = time.perf_counter()
     rule = greedy.solve(data, seed=seed)

@@ -1,7 +1,8 @@
 """Use leftover slots and stock in variants that allow partly covered orders.
 
-Heuristics place whole orders. If slots stay empty, `Variant.LATER` may fill them with orders that
-are covered later, and the split variants with lines that the remaining stock covers.
+Heuristics place only orders that are covered in full. Slots that stay empty can be filled with
+orders whose open lines are covered later (`Variant.LATER`), or with those lines of an order that
+the remaining stock covers (`Variant.SPLIT_TIME` and `Variant.SPLIT_BOTH`).
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ def cover_rest(data: PileOn, values: Assignment) -> Assignment:
     data
         The input.
     values
-        A feasible decision of whole orders.
+        A feasible decision in which every order with a slot is covered in full.
 
     Returns
     -------

@@ -1,9 +1,9 @@
-"""Large inputs: re-optimises a few stations at a time exactly, with all others fixed.
+"""A search for large inputs: two stations at a time are re-optimised exactly, the others fixed.
 
 The search starts from a decision and re-optimises, in rounds, pairs of stations that are close to
-each other. CP-SAT decides on each pair, with its own orders, the waiting orders, and the pods and
-robots that no other station uses. The result is never worse than the start, and the limit applies
-to the total deterministic work.
+each other. For each pair, CP-SAT decides anew on the orders placed there, the waiting orders, and
+the pods and robots that no other station uses. The result is never worse than the start, and
+`deterministic_s` limits the total work.
 """
 
 from __future__ import annotations
@@ -36,22 +36,22 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Improve a decision by re-optimising one part of it, a pair of stations, at a time.
+    """Improve a decision by re-optimising one *part* (pair of stations) after another.
 
     Parameters
     ----------
     data, seed, start
         As for every method.
     limits
-        ``deterministic_s`` limits the work on all parts together, ``iterations`` the number of
-        parts, and ``gap`` each part. Default: one deterministic second.
+        ``deterministic_s`` limits the work on all parts together (default: one deterministic
+        second), ``iterations`` the number of re-optimisations; ``gap`` applies to each of them.
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used.
         Default: all.
 
     Returns
     -------
-    The decision, without a bound unless a single part is the whole problem.
+    The decision. It has a bound only if there is at most one part and no candidates are given.
     """
     left = DEFAULT_WORK if limits.deterministic_s is None else limits.deterministic_s
     limits = replace(limits, deterministic_s=left)
@@ -105,7 +105,9 @@ def solve(
 def station_groups(data: PileOn) -> list[Integers]:
     """Return the pairs of stations to decide together.
 
-    The stations that have free slots or shortages form a ring; two neighbours in it are a pair.
+    The stations that have free slots or shortages are arranged in a ring, in which stations close
+    to each other are neighbours; any two neighbours are a pair. If there are at most two such
+    stations, they are the only group.
 
     Parameters
     ----------

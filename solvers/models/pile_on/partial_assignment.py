@@ -40,8 +40,8 @@ class Offers:
     pod, line, units
         One entry per pair, sorted by pod, then line; `units` is the pod's stock of the SKU.
     match
-        Number of the match to which each entry belongs. A *match* is a pair of a pod and an order
-        for which the pod holds units.
+        Index of the match to which each entry belongs. A *match* is a pair of a pod and an order
+        such that the pod holds a SKU of the order.
     match_pod, match_order
         Pod and order of each match.
     """
@@ -55,7 +55,7 @@ class Offers:
 
     @classmethod
     def of(cls, data: PileOn) -> Offers:
-        """List the offers of an input."""
+        """List the pairs of an input."""
         pod, line = np.nonzero(data.stock[:, data.line_sku])
         order = data.line_order[line]
         new = (np.diff(pod, prepend=-1) != 0) | (np.diff(order, prepend=-1) != 0)
@@ -76,9 +76,10 @@ class PartialAssignment:
     Attributes
     ----------
     scored
-        Number of candidates scored so far: the deterministic work of a heuristic.
+        Number of orders, and of pairs of pod and line, examined so far: the deterministic work of a
+        heuristic.
     built
-        Effort of the preparation, in the unit of `Solution.built`.
+        Effort of preparing the tables, in the unit of `Solution.built`.
     """
 
     def __init__(self, data: PileOn, candidates: Candidates) -> None:
@@ -100,11 +101,11 @@ class PartialAssignment:
 
     @property
     def open_orders(self) -> Flags:
-        """Whether each order has no slot and is no prospect, shape (O,)."""
+        """Whether an order neither has a slot nor is a prospect, shape (O,)."""
         return (self.order_station < 0) & (self.prospect < 0)
 
     def coverable(self, station: int) -> Flags:
-        """Whether what is left in a station's pods covers each order in full, shape (O,).
+        """Whether an order is covered in full by the stock left in a station's pods, shape (O,).
 
         False for orders that have a slot, are prospects, or may not go to the station.
         """
@@ -120,9 +121,10 @@ class PartialAssignment:
         self.slots[station] -= 1
 
     def fill(self, station: int) -> None:
-        """Fill slots with coverable orders: greatest `worth` first, then fewest units, then index.
+        """Fill slots with coverable orders, by greatest `worth`, then fewest units, then index.
 
-        Small orders go first because they leave the most stock for the others.
+        Of orders with the same worth, small ones go first because they leave the most stock for the
+        others.
         """
         while self.slots[station] > 0:
             ready = self.coverable(station)[self._rank]
@@ -133,8 +135,8 @@ class PartialAssignment:
     def reserve(self, station: int) -> None:
         """Choose prospects at a station, in the sequence of `fill`.
 
-        A *prospect* is an order without a slot that the remaining stock covers in full; its units
-        are taken from this stock.
+        A *prospect* is an order that gets no slot although the remaining stock covers it in full;
+        its units are taken from this stock.
         """
         if not self.data.weights.prospects or not self.data.slots[station]:
             return
@@ -165,15 +167,16 @@ class PartialAssignment:
         return pods[(self.pod_station[pods] < 0) & np.isfinite(self._fetch[pods])]
 
     def call_costs(self, pods: Integers, station: int) -> Floats:
-        """Cost of calling each pod to a station, including that of the pod's nearest free robot."""
+        """Cost of calling each pod to a station, including the way of the nearest free robot."""
         cost: Floats = self.data.call_cost[pods, station] + self._fetch[pods]
         return cost
 
     def completions(self, pods: Integers, station: int) -> tuple[Floats, Floats]:
-        """Number and units of orders that each pod would complete, two arrays of shape (N,).
+        """Number and units of orders that each pod would complete: two arrays, one entry per pod.
 
-        Each order that is not yet placed is tested on its own against the pod's units and what is
-        left in the station's pods; several orders may thus count on the same units.
+        Each order that neither has a slot nor is a prospect is tested on its own against the pod's
+        units and what is left in the station's pods, so the same units may count for several
+        orders.
         """
         offers, need = self._offers, self._needs(station)
         lacking = need > 0
@@ -189,18 +192,19 @@ class PartialAssignment:
         return count[pods].astype(np.float64), of_them[pods].astype(np.float64)
 
     def easing(self, pods: Integers, station: int) -> Integers:
-        """Units of a station's shortage that each pod could ease, shape (N,)."""
+        """Units of a station's shortage that each pod could ease, one entry per pod."""
         skus = np.flatnonzero(self.shortage[station])
         stock = self.data.stock[pods[:, None], skus]
         eased: Integers = np.minimum(stock, self.shortage[station, skus]).sum(axis=1)
         return eased
 
     def best_call(self, station: int) -> Call | None:
-        """The call with the greatest gain at a station: one pod, or the set for one order.
+        """The call with the greatest gain at a station: one pod, or the set of pods for one order.
 
         The gain of a pod is the value of the slots it fills, the prospects it brings and the
-        shortage it eases, minus its cost. If no single pod completes an order, the cheapest set of
-        pods that completes one is sought.
+        shortage it eases, minus the cost of calling it. If the pod with the greatest gain fills no
+        slot although one is free, it is compared with the cheapest set of pods that completes an
+        order. None if no call has a gain.
         """
         pods = self.free_pods(station)
         if not pods.size or (not self.slots[station] and not self.shortage[station].any()):
@@ -226,11 +230,12 @@ class PartialAssignment:
         return max(options, key=lambda call: call.gain, default=None)
 
     def best_prospect_call(self, station: int) -> Call | None:
-        """The best pod whose prospects at a station are worth more than its call costs.
+        """The best pod to call for prospects; None if no pod's prospects are worth the call.
 
-        As constraint (5) of `program` demands, the pod must serve an order with a slot there. This
-        is either an order already placed or one of the pod's prospects. In the second case, a
-        placed order that no other called pod depends on gives its slot to the prospect.
+        As constraint (5) of `program` demands, the pod must serve an order with a slot at the
+        station. This is either an order already placed or one of the pod's prospects. In the second
+        case, the prospect takes the slot of a placed order, which must not be the only placed order
+        that another called pod serves.
         """
         pods = self.free_pods(station)
         if self._spare_order(station) < 0:
@@ -246,8 +251,8 @@ class PartialAssignment:
     def settle_prospects(self, call: Call) -> None:
         """Add the prospects of a call.
 
-        If its pod serves no placed order, one of the prospects gets the slot of a placed order. If
-        that is impossible, the call is taken back.
+        If the called pod serves no placed order, one of the prospects gets the slot of a placed
+        order. If that is impossible, the call is taken back.
         """
         station, pods = call.station, np.array(call.pods)
         new = np.flatnonzero(self.prospect < 0)
@@ -374,16 +379,17 @@ def decision(partial: PartialAssignment) -> Assignment:
 
 
 def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
-    """Return the free robot that fetches each called pod, or -1, shape (P,).
+    """Return the free robot that fetches each pod, at the least total cost, shape (P,).
 
-    The total cost is the least possible. A pod that needs no free robot gets -1.
+    A pod that is not called, or needs no free robot, gets -1.
 
     Parameters
     ----------
     data
         The input.
     pod_station
-        Station of each called pod, or -1, shape (P,). There must be enough robots.
+        Station to which each pod is called, or -1 if it is not called, shape (P,). There must be
+        enough free robots.
     """
     pod_robot = np.full(data.pods, -1)
     pods = np.flatnonzero((pod_station >= 0) & data.needs_robot)
@@ -394,7 +400,7 @@ def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
 
 
 def drop_idle(partial: PartialAssignment) -> None:
-    """Take back called pods that are no longer needed, most expensive first.
+    """Take back the calls of pods that are not needed any more, the most expensive call first.
 
     Parameters
     ----------

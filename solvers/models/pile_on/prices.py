@@ -1,25 +1,28 @@
 r"""A lower bound by Lagrangian relaxation, with prices for lines at stations; fast at every size.
 
-Only constraints (1), (3), (4), (7) and (8) of `program` are kept, and (8) is relaxed: a line l
-covered at station s pays :math:`\pi_{ls} \ge 0`, each unit of shortage that is eased earns
-:math:`\sigma_{sk}`, and a pod at s earns the prices of what it could supply. With the symbols of
-`data`, for all prices
+Constraints (2) and (5) of `program` are dropped, as is part of (6) if orders may be split over
+stations; (1) is applied to all stations together; and (8) is replaced by prices: covering a line l
+at station s costs :math:`\pi_{ls} \ge 0`, and a pod called to s earns the prices of what it could
+supply, including :math:`\sigma_{sk}` for each unit of shortage that it could ease. Let R be the
+number of free robots and :math:`cost_{ps}` the cost of calling pod p to station s; the other
+symbols are those of `data`. For all prices,
 
 .. math::
 
     & \textstyle\sum_p \min(0, \min_s (cost_{ps}
         - \sum_l \min(1, a_{pk(l)} / q_l)\, \pi_{ls}
         - \sum_k \min(a_{pk}, shortage_{sk})\, \sigma_{sk}))
-      \quad \text{(the best R pods, if each needs a robot)} \\
+      \quad \text{(of the pods that need a robot, the best R)} \\
     & + \textstyle\sum_{s,k} shortage_{sk}\, \sigma_{sk}
       - \sum_{l,s} \min(1, surplus_{sk(l)} / q_l)\, \pi_{ls}
       + \text{orders}(\pi), \qquad 0 \le \sigma_{sk} \le open\_unit
 
-is a lower bound. In orders(π), which includes the penalties for empty slots, every order takes its
-cheapest option, with no more slots in total than all stations have. If a pod needs a robot, its
-cost includes the trip of the nearest free robot. Prices start as equal shares of the pods' costs
-and are improved by subgradient steps of Polyak's length (Polyak 1969), which aim at the objective
-of a known decision.
+is a lower bound. Here orders(π) is the least total cost of orders and empty slots at these prices:
+each order gets a slot, becomes a prospect, or neither, and at most as many orders get slots as all
+stations together have free. If a pod needs a robot, its cost includes the trip of the nearest free
+robot. Initially, the price of a line at a station is the least that a pod with its SKU costs per
+line that this pod could cover. Prices are improved by subgradient steps of Polyak's length (Polyak
+1969), which aim at the objective of a known decision.
 """
 
 from __future__ import annotations
@@ -60,7 +63,7 @@ def bound(data: PileOn, upper: float, iterations: int = ITERATIONS) -> float:
 
     Returns
     -------
-    The best bound over all steps, rounded down.
+    The best bound over all steps, lowered slightly to allow for rounding errors.
     """
     dual = _Dual(data)
     price, relief = dual.start()
@@ -85,18 +88,18 @@ def bound(data: PileOn, upper: float, iterations: int = ITERATIONS) -> float:
 def bounded(
     data: PileOn, found: Solution[Assignment], iterations: int = ITERATIONS, gap: float = 0.0
 ) -> Solution[Assignment]:
-    """Add the bound and the resulting status to a decision.
+    """Add the bound, and the status that follows from it, to a solution.
 
     Parameters
     ----------
     data
         The input.
     found
-        The decision.
+        The solution.
     iterations
         Number of subgradient steps. Default `ITERATIONS`.
     gap
-        Relative gap at which the decision counts as optimal. Default 0.
+        Relative gap at which the solution counts as optimal. Default 0.
     """
     cost = found.objective
     least = bound(data, cost, iterations)

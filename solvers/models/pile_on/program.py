@@ -1,17 +1,19 @@
 r"""The pile-on models as an integer linear program, for every back end.
 
-Columns (all binary except v): x_ps pod p is called to station s, y_os order o takes a slot, z_ls
-line l is covered, g_os prospect (order o could be filled but gets no slot), e_o order is complete,
-w_o order is started, b_rp robot r fetches pod p, v_sk number of open units that stay without stock.
-C_s is the number of free slots.
+Columns (all binary except v) are x_ps: pod p is called to station s; y_os: order o takes a slot at
+s; z_ls: line l is covered at s; g_os: order o is a prospect at s (could be filled there, but gets
+no slot); e_o: order o is complete; w_o: order o is started, that is, has a slot; b_rp: robot r
+fetches pod p; v_sk: number of units of SKU k, open at s, that stay without stock. C_s is the number
+of free slots.
 
 In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os and e_o = sum_s y_os, so that only x,
-y, g, b, v remain. That is the model M1G of Jiao et al. 2025 with h = y + g substituted (y <= h
-holds by itself), with the empty slots u_s = C_s - sum_o y_os, and without its link columns d:
-"2 d_ops <= y_os + x_ps, x_ps <= sum_o d_ops" says only that a called pod shares a SKU with an order
-placed there, which is (5). There is one difference: M1G also rewards prospects of stations without
-free slots, which only the leftovers of inbound pods can serve; here columns g exist only if
-C_s > 0.
+y, g, b, v remain. That is the model M1G of Jiao et al. 2025 in another form: y + g replaces its
+columns h (order could be filled; its constraint y <= h then always holds), C_s - sum_o y_os
+replaces its columns u_s (empty slots), and its link columns d are left out, because the constraints
+"2 d_ops <= y_os + x_ps, x_ps <= sum_o d_ops" say only that a called pod shares a SKU with an order
+placed at its station, which is (5). There is one true difference: M1G also rewards prospects at
+stations without free slots (only the leftovers of inbound pods can serve them); here columns g
+exist only if C_s > 0.
 
 .. math::
 
@@ -30,8 +32,10 @@ C_s > 0.
     (8)\quad & q_l (z_{ls} + g_{os}) \le \min(q_l, surplus_{sk})
                + \textstyle\sum_p \min(q_l, a_{pk}) x_{ps}
 
-Constraint (8) is our addition. It is implied for integer solutions; in the relaxation it cuts off
-fractions of a well-stocked pod, which (2) allows, and so makes the bound tight.
+In (7), the last sum is at most 1 in `Variant.SPLIT_BOTH` and equal to w_o in
+`Variant.SPLIT_STATIONS`. Constraint (8) is our addition. Every integer solution satisfies it. In
+the relaxation, (2) lets a small fraction of a well-stocked pod cover a whole line; (8) forbids this
+and so makes the bound tight.
 """
 
 from __future__ import annotations
@@ -113,7 +117,7 @@ def solve_program(
         A feasible decision to start from; None: the empty decision.
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used; None:
-        all. With a proper subset there is no bound (-inf).
+        all. If candidates are given, the bound is -inf.
     strengthen
         Whether to add constraint (8) of this module, which tightens the relaxation.
 

@@ -1,9 +1,9 @@
 """Lower bounds on the pile-on models from the linear relaxation (cvxpy, Clarabel).
 
-This relaxes the program with constraint (8), over all pairs; `safe_bound` computes the bound from
-the duals, rounded to the safe side. The method suits small and medium sites. At a large site, the
-matrices that the interior-point method factorises do not stay sparse, and the bound that CP-SAT
-proves on the full program (`cp_sat.solve` without candidates) is as good and much faster to obtain.
+The program with constraint (8) is relaxed over all pairs; `safe_bound` computes the bound from the
+duals and rounds it down. The method suits small and medium sites. At a large site, the matrices
+that the interior-point method factorises do not stay sparse, and the bound that CP-SAT proves on
+the full program (`cp_sat.solve` without candidates) is as good and much faster to obtain.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from rmfs.solvers.models.solution import NO_LIMITS, Limits
 
 
 class PileOnRelaxation:
-    """Relaxations of a sequence of inputs, compiled anew only when the input's pattern changes.
+    """Relaxations of a sequence of inputs, compiled anew only when their sparsity pattern changes.
 
-    Inputs usually share a pattern as long as the same pods hold SKUs of the same lines, even if
-    costs, weights, quantities or slots change.
+    The pattern (the positions of the nonzeros) usually stays the same as long as the same pods hold
+    SKUs of the same lines, even if costs, weights, quantities or slots change.
 
     Attributes
     ----------
@@ -43,7 +43,8 @@ class PileOnRelaxation:
 
         Returns
         -------
-        The relaxed columns and the bound, which is valid whatever the solver's final status.
+        The column values of the relaxation, and the bound; it is valid whatever the solver's final
+        status.
         """
         program = formulate(data, everything(data)).program
         if self._compiled is None or not self._compiled.fits(program):

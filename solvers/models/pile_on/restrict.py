@@ -1,6 +1,6 @@
 """Smaller inputs of the same kind: without irrelevant pods and SKUs, or for a few stations only.
 
-Each restriction can turn a decision of the small input into one of the full input.
+`Compact` and `Part` also turn a decision of the small input into one of the full input.
 """
 
 from __future__ import annotations
@@ -41,7 +41,10 @@ class Compact:
         return replace(values, pod_station=pod_station, pod_robot=pod_robot)
 
     def shrink(self, values: Assignment) -> Assignment:
-        """Turn a decision of the full input (candidate pairs only) into one of the small input."""
+        """Turn a decision of the full input into one of the small input.
+
+        The decision may use candidate pairs only.
+        """
         return replace(
             values,
             pod_station=values.pod_station[self.pods],
@@ -93,9 +96,9 @@ class Part:
     full
         The full input.
     values
-        The decision that fixes the rest.
+        The decision of the full input; outside the part it stays fixed.
     data, candidates
-        The input of the part, and its pairs.
+        The input of the part, and its candidate pairs.
     stations, orders, robots
         The stations, orders and robots of the part, in the numbering of the full input.
     kept
@@ -164,11 +167,11 @@ def part(
 ) -> Part | None:
     """Make the part in which the decisions of a few stations are freed and all others fixed.
 
-    An order that also has a slot at another station stays as it is: its slots at the freed stations
-    remain taken, its lines there become open demand, and a pod called there stays called if it
-    holds a SKU of such a line. Prospects of a freed station also stay as they are if such orders
-    take all its slots. As open demand need not be covered, a decision that `merge` returns may
-    leave such a line without stock; `violations` reports this.
+    An order with slots both at a freed station and at another one stays as it is: its slots at the
+    freed stations remain taken, its lines covered there become open demand, and a pod called there
+    stays called if it holds a SKU of such a line. Prospects of a freed station also stay as they
+    are if such orders take all its slots. As open demand need not be covered, a decision that
+    `merge` returns may leave such a line without stock; `violations` reports this.
 
     Parameters
     ----------

@@ -1,21 +1,22 @@
 r"""A decision, its cost, and its feasibility.
 
 The objective uses x: pod called to station; t: travel cost of this call; b: robot fetches pod;
-f: travel cost of the robot; C_s: slots free before the decision; n_s: slots that the decision
-takes; v: units of open demand left uncovered; c_o: order covered in full, or a prospect; q_o: units
-of the order; z_l: line covered; worth_o: extra reward for giving the order a slot; and m_o: number
-of slots that the order takes. The other names are those of `Weights`:
+f: travel cost of the robot to the pod; C_s: slots free before the decision; n_s: slots that the
+decision takes; v: units of open demand left uncovered; c_o: order covered in full, or a prospect;
+q_o: units of the order; z_l: line covered; worth_o: extra reward for giving the order a slot; and
+m_o: number of slots that the order takes. The other names are those of `Weights`:
 
 .. math::
 
     \min\ & \sum_{p,s} (visit + travel \cdot t_{ps})\, x_{ps} + travel \sum_{r,p} f_{rp}\, b_{rp}
-        + empty \sum_s (C_s - n_s) + open\_unit \sum_{s,k} v_{sk} \\
+        + empty\_slot \sum_s (C_s - n_s) + open\_unit \sum_{s,k} v_{sk} \\
     & - \sum_o (complete + unit\, q_o)\, c_o - line \sum_l z_l - \sum_o worth_o [m_o > 0]
         + open\_line \sum_{l: m_{o(l)} > 0} (1 - z_l) + part \sum_o (m_o - 1)^+
 
-where the `open_line` term belongs to `Variant.LATER` alone. With the default weights, `WHOLE` and
-robots this is M1G (Jiao et al. 2025, eq. 14), except for prospects of stations without free slots;
-h_o of the paper, "order could be filled", is c_o here.
+where the `open_line` term belongs to `Variant.LATER` alone. With the default weights, in
+`Variant.WHOLE` and if robots are decided, this is the objective of M1G (Jiao et al. 2025, eq. 14),
+except for prospects of stations without free slots; h_o of the paper, "order could be filled", is
+c_o here.
 """
 
 from __future__ import annotations
@@ -43,8 +44,8 @@ class Assignment:
     pod_robot
         Robot that fetches a called pod, or -1, shape (P,).
     prospect
-        Station with free slots whose pods could also fill the order, although it gets no slot, or
-        -1, shape (O,).
+        Station at which an order is a prospect, or -1, shape (O,): the station has free slots, and
+        its pods could fill the order as well, but the order gets no slot.
     """
 
     slot: Flags
@@ -135,7 +136,7 @@ def complete(data: PileOn, values: Assignment) -> Flags:
 
 
 def cost_of_calls(data: PileOn, values: Assignment) -> float:
-    """Cost of the called pods and their robots, a possible reference for relative gaps.
+    """Cost of the called pods and their robots; controllers state gaps relative to this cost.
 
     Parameters
     ----------
@@ -153,7 +154,7 @@ def cost_of_calls(data: PileOn, values: Assignment) -> float:
 
 
 def objective(data: PileOn, values: Assignment) -> float:
-    """Return the cost of a decision, as defined by the module.
+    """Return the objective of a decision, as defined by the module.
 
     Parameters
     ----------
@@ -190,7 +191,8 @@ def violations(data: PileOn, values: Assignment) -> list[str]:
 
     Returns
     -------
-    One line per kind of violation, naming its first occurrence; empty if the decision is feasible.
+    One message per kind of violation, naming its first occurrence; empty if the decision is
+    feasible.
     """
     parts = values.slot.sum(axis=1)
     called = np.flatnonzero(values.pod_station >= 0)

@@ -47,8 +47,8 @@ class Weights:
     Parameters
     ----------
     travel
-        Cost per unit of travel, of a called pod to its station and of a robot to the pod. Default
-        1.
+        Cost per unit of travel; a called pod travels to its station, and a robot to the pod.
+        Default 1.
     visit
         Cost per called pod in addition to its travel, for example for the hand-over at the station.
         Default 0.

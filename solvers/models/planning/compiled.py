@@ -1,4 +1,4 @@
-"""Interface to the compiled search: conversion of its input and of the plan it returns."""
+"""Interface to the compiled start rule and search: conversion of the input and of the plan."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Found(NamedTuple):
 
 
 def visits(data: Planning) -> Visits:
-    """Create the compiled search for an input; SKUs that no line asks for are left out."""
+    """Create the compiled rule and search for an input, without SKUs that no line asks for."""
     wanted, sku = np.unique(data.line_sku, return_inverse=True)
     stock = data.stock if len(wanted) == data.stock.shape[1] else data.stock[:, wanted]
     return Visits(
@@ -43,7 +43,7 @@ def visits(data: Planning) -> Visits:
 
 
 def found(told: tuple[list[list[int]], list[int], list[int], float, int]) -> Found:
-    """Turn the result of the compiled search into a `Found`."""
+    """Turn the result of the compiled rule or search into a `Found`."""
     pods, order_station, line_visit, value, work = told
     plan = Plan(
         tuple(tuple(new) for new in pods),

@@ -35,7 +35,7 @@ def solve(
     seed
         Seed of the solver. Default 0.
     start, pods
-        As for `greedy`, from whose plan the solver starts.
+        As for `greedy`; the solver starts from the plan that `greedy` returns.
     bound_steps
         Not used.
     """

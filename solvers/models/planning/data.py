@@ -1,4 +1,4 @@
-"""Input of the planning model: waiting orders, pods under way, and the contents of pods."""
+"""Input of the planning model: waiting and open orders, pods under way, and contents of pods."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ class Planning:
 
     A *visit* is one pod at one station. Pods under way make the first visits to their station, in
     the order in which they arrive. New visits follow; each pod makes at most one new visit. Visits
-    of a station are counted from 0, those of pods under way included.
+    of a station are numbered from 0, those of pods under way included.
 
-    A line is served by one visit. An order occupies a slot from its first visit to its last, at
-    which it *closes*. Between visits a station keeps one slot free, so that orders served by a
-    single visit can pass through it one after the other.
+    A line is served by a single visit. An order occupies a slot from its first visit to its last,
+    at which it *closes*. Between visits a station keeps one slot free (unless its open orders
+    occupy all slots, see `kept`), so that orders served by a single visit can pass through this
+    slot one after the other.
 
     Parameters
     ----------
@@ -40,8 +41,8 @@ class Planning:
     order_station
         Station at which an order is open, or -1 if it waits, shape (O,).
     order_until
-        For each order, the last visit by a pod under way that carries units for it; -1 if there is
-        none; shape (O,).
+        For each open order, the number of the last visit at which a pod under way brings units for
+        it; -1 if there is none, and for waiting orders; shape (O,).
     order_worth
         Reward for closing an order, in addition to the rewards for its lines, shape (O,), in s of
         robot time.
@@ -171,8 +172,8 @@ class Planning:
     def kept(self) -> list[int]:
         """Number of orders that each station may keep open from one visit to the next.
 
-        This is the larger of two numbers: its slots minus one; and its open orders that have lines
-        to plan or get units from the second or a later pod under way.
+        This is the larger of two numbers: the station's slots minus one, and the number of its open
+        orders that have lines to plan or get units from the second or a later pod under way.
         """
         stays = self.order_until > 0
         stays[self.line_order] = True

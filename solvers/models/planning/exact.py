@@ -1,4 +1,4 @@
-"""Shared part of the exact methods: solving the program from the plan of the start rule."""
+"""Shared part of the exact methods: solve the program, starting from the start rule's plan."""
 
 from __future__ import annotations
 

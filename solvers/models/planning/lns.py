@@ -1,10 +1,11 @@
 """Neighbourhood search: visits are removed from a plan, and others inserted (Shaw 1998).
 
 Each step replaces, moves or adds a visit of a station, swaps visits of two stations, or
-redistributes what two stations serve. A new pod is the best, by a quick estimate, of a few pods
-drawn from those that could serve something. Slightly worse plans are accepted at first (threshold
-accepting, Dueck and Scheuer 1990). A step changes the lines of one or two stations only, so its
-time does not depend on the number of stations. The steps are compiled: `rmfs/traffic/src/visits`.
+redistributes what two stations serve. The pod of a new visit is the best, by a quick estimate, of a
+few pods drawn from those that could serve something. Slightly worse plans are accepted at first
+(threshold accepting, Dueck and Scheuer 1990). A step changes only what one or two stations serve,
+so its time does not depend on the number of stations. The code of the steps is compiled:
+`rmfs/traffic/src/visits`.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def solve(
     seed
         Seed of the search. Default 0.
     start
-        A feasible plan. Default: none.
+        A feasible plan, to which the start rule adds visits. Default: none.
     pods
         Pods of the new visits of an earlier plan, station by station. The start rule keeps visits
         that are still possible. Not used if `start` is given. Default: none.

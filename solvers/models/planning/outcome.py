@@ -20,7 +20,7 @@ that they examine as units of work."""
 
 
 def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
-    """Return the better of a plan and the start, if a start is given."""
+    """Return the better of a plan and the start; without a start, the plan."""
     if start is not None and objective(data, start) < objective(data, plan):
         return start
     return plan
@@ -29,7 +29,10 @@ def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
 def solution(
     data: Planning, found: Found, start: Plan | None, bound_steps: int, began: float
 ) -> Solution[Plan]:
-    """Make a `Solution` of a plan; compute a bound if `bound_steps` is positive."""
+    """Make a `Solution` of the plan found, or of the start if that is better.
+
+    A bound is computed if `bound_steps` is positive.
+    """
     chosen = better(data, found.plan, start)
     value = objective(data, chosen)
     proven = prices.bound(data, value, bound_steps)

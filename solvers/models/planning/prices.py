@@ -1,10 +1,10 @@
-r"""A bound for any size: lines have prices, and every visit takes what pays most.
+r"""A bound for inputs of any size: lines have prices, and every visit serves what pays most.
 
 The bound ignores slots and the rule that lines of an order must be served together. The rule that
 each line is served at most once is replaced by a price :math:`\pi_l \ge 0` (Lagrangian relaxation).
-Two problems remain: for each visit and SKU, which lines to serve with the stock of the pod, at
-least one per visit (a knapsack, bounded by its relaxation), and which pod makes which visit (an
-assignment). The bound is valid for any prices; subgradient steps improve it.
+Two problems remain: which pod makes which new visit (an assignment), and which lines of each SKU a
+visit serves with the stock of its pod (a knapsack, bounded by its relaxation); a new visit serves
+at least one line. The bound is valid for any prices; subgradient steps improve it.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def bound(data: Planning, value: float, steps: int) -> float:
     value
         Objective of a known plan, from which the length of the subgradient steps is computed.
     steps
-        Number of times the prices are improved; with 0 the bound is -inf.
+        Number of subgradient steps; with 0 the bound is -inf.
     """
     best = -np.inf
     prices = np.zeros(data.lines)

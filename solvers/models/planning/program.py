@@ -8,14 +8,14 @@ r"""The plan as an integer program.
     & c_{osv}: \text{order } o \text{ closes in this visit}, \quad
     h_{osv}: \text{order } o \text{ is kept open until the next visit}
 
-A visit uses no more units than its pod has. Either all lines of a waiting order are served, at the
-station of the order, or none. An order does not close before its last line is served, and the
-orders kept open fit into the slots.
+A visit uses no more units than its pod has. Of a waiting order, either all lines are served, at one
+station, or none. An order does not close before its last line is served, and the orders kept open
+fit into the slots.
 
-Three kinds of rows are stated per line or pod although one aggregated row would suffice, because
-the relaxation is then much tighter (2 % from the best plan instead of 50 %). A new visit serves a
-line only if its pod has all units of the line; a pod comes only if it serves such a line; and an
-order is kept open from its first line until it closes:
+Three kinds of rows are stated for each line or pod. Fewer, aggregated rows would define the same
+plans, but the relaxation would be much weaker (50 % from the best plan instead of 2 %). A new visit
+serves a line only if its pod has all units of the line; a pod comes only if it serves such a line;
+and an order is kept open from its first line until it closes:
 
 .. math::
 

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 def first_visits(
     data: Planning, start: Plan | None, pods: Sequence[Sequence[int]]
 ) -> list[list[int]]:
-    """Return the visits of the start, or those of an earlier plan that are still possible.
+    """Return the pods of the start's new visits, station by station.
+
+    Without a start, return those pods of an earlier plan whose visits are still possible.
 
     Raises
     ------

@@ -29,7 +29,8 @@ class Plan:
     order_station
         Station of each order, or -1 if it keeps waiting, shape (O,).
     line_visit
-        Visit that serves each line, at the station of its order; -1 for none, shape (L,).
+        Number of the visit, at the station of its order, that serves each line; -1 for none; shape
+        (L,).
     """
 
     pods: Sequence[Sequence[int]]

@@ -1,4 +1,4 @@
-"""A bound in whole pods for every back end, from a relaxation that aggregates all stations."""
+"""Rack allocation by a solver, with a bound in whole pods that a relaxation may improve."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ _TOLERANCE = 1e-4
 def solve_in_whole_pods(
     backend: Backend, data: RackAllocation, limits: Limits, seed: int, start: Allocation | None
 ) -> Solution[Allocation]:
-    """Solve the integer program and round its bound up to a whole number of pods.
+    """Solve the integer program, and return a bound that is a whole number of pods.
+
+    It is the best of three: the solver's bound and that of the relaxation `together`, both rounded
+    up, and `pods_needed`.
 
     Parameters
     ----------
@@ -25,8 +28,10 @@ def solve_in_whole_pods(
         The solver.
     data
         The problem.
-    limits, seed, start
+    limits, seed
         As for the back end.
+    start
+        A feasible allocation to start from, or None.
 
     Returns
     -------

@@ -17,7 +17,7 @@ def solve(
     seed: int = 0,
     start: Allocation | None = None,
 ) -> Solution[Allocation]:
-    """Find the fewest pods by constraint programming.
+    """Find an allocation with the fewest pods by constraint programming.
 
     Of the limits, `deterministic_s` and `gap` apply.
     """

@@ -1,15 +1,15 @@
-r"""The problem: each station gets as many orders as it has slots, and pods that cover them.
+r"""The problem: each station gets as many orders as it has slots, and pods that hold their units.
 
 .. math::
 
     \min \sum_{ps} y_{ps}, \quad \sum_o x_{os} = C_s, \quad \sum_s x_{os} \le 1, \quad
     \sum_s y_{ps} \le 1, \quad \sum_p stock_{pk}\, y_{ps} \ge \sum_o units_{ok}\, x_{os}
 
-for all stations s and SKUs k, where :math:`y_{ps}` is 1 if pod p goes to station s, :math:`x_{os}`
-is 1 if order o goes to station s, and :math:`C_s` is the number of slots (Valle and Beasley 2021,
-who speak of racks and pickers). There may be more orders than slots, but every slot is filled.
-Unlike the pile-on models, this model is static: it has no pods under way, no travel and no empty
-slots.
+for all orders o, pods p, stations s and SKUs k, where :math:`y_{ps}` is 1 if pod p goes to station
+s, :math:`x_{os}` is 1 if order o goes to station s, and :math:`C_s` is the number of slots (Valle
+and Beasley 2021, who speak of racks and pickers). There may be more orders than slots, but every
+slot is filled. Unlike the model `rmfs.solvers.models.pile_on`, this model is static: it has no pods
+under way, no travel and no empty slots.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class RackAllocation:
     stock
         Units of each SKU on each pod, shape (P, K).
     slots
-        Orders that each station takes, shape (S,).
+        Number of orders that each station takes, shape (S,).
 
     Raises
     ------
@@ -98,9 +98,10 @@ def objective(data: RackAllocation, allocation: Allocation) -> float:
 
 
 def pods_needed(data: RackAllocation) -> float:
-    """Return a lower bound on the number of pods: one per station that must get a nonempty order.
+    """Return a lower bound on the number of pods.
 
-    Orders without lines need no pod; at best, they fill the stations with the fewest slots.
+    It is the number of stations that must get an order with lines. Orders without lines need no
+    pod; in the best case, they fill the stations with the fewest slots.
 
     Parameters
     ----------

@@ -26,18 +26,18 @@ def solve(
     seed: int = 0,
     start: Allocation | None = None,
 ) -> Solution[Allocation]:
-    """Fill stations one after another, the one with the most slots first.
+    """Fill the stations one after another, in decreasing order of their numbers of slots.
 
-    Until its slots are filled, a station gets the pod that completes the most remaining orders,
-    together with the orders that are then complete, those with the fewest units first. If no pod
-    completes an order, the station gets the pod that holds missing units of the most order lines.
-    Pods that turn out to be unnecessary are released.
+    Until its slots are filled, a station repeatedly gets the pod that completes the most remaining
+    orders, and then the orders that its pods can serve, those with the fewest units first. If no
+    pod completes an order, the station gets the pod that holds missing units of the most order
+    lines. Pods that turn out to be unnecessary are released.
 
     Returns
     -------
-    The allocation; ties go to the lowest index. The status is LIMIT if a station could not be
-    filled, and INFEASIBLE if stock can serve fewer orders than there are slots. The bound is that
-    of `pods_needed`.
+    The allocation; ties go to the lowest index. If a station could not be filled, the status is
+    INFEASIBLE if fewer orders than there are slots could be served even if each had the whole stock
+    to itself, and LIMIT otherwise. The bound is that of `pods_needed`.
     """
     begin = perf_counter()
     servable = (data.units <= data.stock.sum(axis=0)).all(axis=1)

@@ -15,5 +15,8 @@ def solve(
     seed: int = 0,
     start: Allocation | None = None,
 ) -> Solution[Allocation]:
-    """Find the fewest pods by branch and bound; of the limits, `nodes` and `gap` apply."""
+    """Find an allocation with the fewest pods by branch and bound.
+
+    Of the limits, `nodes` and `gap` apply.
+    """
     return solve_in_whole_pods(highs.solve, data, limits, seed, start)

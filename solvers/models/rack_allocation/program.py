@@ -1,12 +1,14 @@
 r"""The integer program.
 
-Two additions make the relaxation tighter without cutting off any allocation. No station needs more
-of SKU k than the sum :math:`d_{sk}` of the :math:`C_s` largest order lines of that SKU, so
+Two additions to the program of the module `data` make its relaxation tighter without cutting off
+any allocation. No station needs more of SKU k than the sum :math:`d_{sk}` of the :math:`C_s`
+largest order lines of that SKU, so
 
 .. math:: \sum_p \min(stock_{pk}, d_{sk})\, y_{ps} \ge \sum_o units_{ok}\, x_{os};
 
-and an order needs a pod for each of its SKUs: :math:`x_{os} \le \sum_{p \ni k} y_{ps}`. Pods
-without any wanted SKU, and orders that all pods together cannot serve, have no columns.
+and each SKU k of an order must be on at least one pod at the order's station: :math:`x_{os} \le
+\sum_{p \ni k} y_{ps}`. Pods without any wanted SKU, and orders that not even all pods together can
+serve, have no columns.
 """
 
 from __future__ import annotations
@@ -72,11 +74,12 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
 
 
 def together(data: RackAllocation) -> LinearProgram:
-    """Formulate the program aggregated over the stations, a relaxation with few columns.
+    """Formulate the program with all stations merged into one, a relaxation with few columns.
 
-    Each SKU has one d (see the module), the largest of all stations, so that each row is implied by
-    the sum of the rows it replaces. If all stations have equally many slots, the linear relaxation
-    of this program has the same value as that of the program from `formulate`.
+    For each SKU k, the largest :math:`d_{sk}` of all stations s (see the module) is used, so that
+    each row is implied by the sum of the rows that it replaces. If all stations have equally many
+    slots, the linear relaxation of this program has the same value as that of the program from
+    `formulate`.
 
     Parameters
     ----------

@@ -13,9 +13,10 @@ from rmfs.solvers.models.replenishment.data import Replenishment
 def best_pods(data: Replenishment, *, pods: int, stations: int) -> Replenishment:
     """Keep the best pods of every bundle and the nearest stations of every pod.
 
-    A pod is rated by the worth of storing the bundle in it minus a share of the cost of its
-    shortest trip. This share is the cost divided by the number of bundles of average size that fit
-    into the pod. A bundle that only a few pods can store keeps all of them.
+    For each bundle, a pod is rated by the worth of storing the bundle in it, minus a share of the
+    cost of the pod's shortest trip. This share is the cost divided by the number of bundles of
+    average size that fit into the pod. A bundle that no more than `pods` pods can store keeps all
+    of them.
 
     Parameters
     ----------
@@ -28,8 +29,9 @@ def best_pods(data: Replenishment, *, pods: int, stations: int) -> Replenishment
 
     Returns
     -------
-    The same problem with fewer pairs; ties keep the lowest index. Its solutions are feasible for
-    the full problem; its bound is not valid for the full problem.
+    The same problem with fewer allowed pairs (bundle and pod, pod and station); of equally good
+    ones, those with the lowest index are kept. Its solutions are feasible for the full problem, but
+    its bound is not valid for the full problem.
     """
     trip_s = data.trip_s.min(axis=1, initial=np.inf)
     mean_space = max(float(data.space.mean()), 1e-9) if len(data.space) else 1.0

@@ -18,7 +18,8 @@ def solve(
 ) -> Solution[Stocking]:
     """Choose pods and stations by constraint programming.
 
-    Of the limits, `deterministic_s` and `gap` apply. The bound is at least that of the relaxation.
+    Of the limits, `deterministic_s` and `gap` apply. If a limit ends the search, the bound is at
+    least that of the linear relaxation.
     """
     backend = with_relaxed_bound(cp_sat.solve)
     return solve_by(backend, lambda: formulate(data, whole=True), limits, seed=seed, start=start)

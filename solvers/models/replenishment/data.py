@@ -6,10 +6,11 @@ r"""The problem: waiting bundles, and pods and stations with free space.
 
 Every bundle b goes to one pod p or is left, :math:`\sum_p x_{bp} + l_b = 1`. A pod that gets a
 bundle is brought to one station s, :math:`x_{bp} \le \sum_s y_{ps} \le 1`. The bundles of a pod fit
-into it, and all bundles brought to a station fit into its buffer. The worth of a bundle in a pod is
-the robot time that it will save (`bundle_worth_s`), so cost and worth are both in seconds, and a
-trip is made if its bundles save more than it costs. The waiting bundles are rated one by one; the
-mutual benefit of two new bundles in the same pod is not counted.
+into its free space, and the bundles of all pods brought to a station fit into the free space of the
+station. The worth of a bundle in a pod is the robot time that the bundle will save there
+(`bundle_worth_s`), so cost and worth are both in seconds, and a trip is made if its bundles save
+more than it costs. The waiting bundles are rated one by one; the mutual benefit of two new bundles
+in the same pod is not counted.
 """
 
 from __future__ import annotations
@@ -48,8 +49,8 @@ class Replenishment:
     pod_space
         Space units free in each pod, shape (P,).
     trip_s
-        Robot time to bring each pod to each station and back, shape (P, S), in s; +inf where it may
-        not go, 0 where it is going anyway.
+        Robot time to bring each pod to each station and back, shape (P, S), in s; +inf where the
+        pod may not go, 0 where the pod is going anyway.
     station_space
         Space units free at each station, shape (S,).
 
@@ -154,5 +155,5 @@ def violations(data: Replenishment, stocking: Stocking) -> list[str]:
     if (at > data.station_space).any():
         found.append("a station gets more bundles than fit into it")
     if not math.isfinite(objective(data, stocking)):
-        found.append("a pair is not allowed, or a bundle is left out that must be stored")
+        found.append("a pair is not allowed, or a bundle that must be stored is left out")
     return found

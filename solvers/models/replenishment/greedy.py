@@ -1,4 +1,4 @@
-"""Bring pod after pod, each time the pod with the greatest gain from bundles less its trip cost."""
+"""Bring pod after pod, each time the pod with the greatest gain (of bundles, minus trip cost)."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ def solve(
 ) -> Solution[Stocking]:
     """Repeatedly bring the pod of greatest gain, with the bundles that gain most per space unit.
 
-    As the remaining bundles and space only decrease, a gain computed earlier is an upper bound, so
-    only the pods at the top of a heap are rated again. The initial rating of a pod is the gain that
-    it would have if bundles could be divided. Bundles that must be stored count as a large gain.
+    Gains are expected to decrease as bundles and space are used up. A gain computed earlier is
+    therefore treated as an upper bound, and only the pods at the top of a heap are rated again. The
+    initial rating of a pod is the gain that it would have if bundles could be divided. Storing a
+    bundle that must be stored counts as a large gain.
 
     Returns
     -------
@@ -116,7 +117,7 @@ class Filling:
         self._room[station] -= sum(self._space[bundle] for bundle in bundles)
 
     def gain(self, pod: int, station: int, wanted: list[int]) -> tuple[float, list[int]]:
-        """Return the gain of bringing a pod, and the wanted bundles that fit, for which it comes.
+        """Return the gain of bringing a pod to a station, and the bundles that it would get there.
 
         Parameters
         ----------

@@ -18,7 +18,8 @@ def solve(
 ) -> Solution[Stocking]:
     """Choose pods and stations by branch and bound.
 
-    Of the limits, `nodes` and `gap` apply. The bound is at least that of the relaxation.
+    Of the limits, `nodes` and `gap` apply. If a limit ends the search, the bound is at
+    least that of the linear relaxation.
     """
     backend = with_relaxed_bound(highs.solve)
     return solve_by(backend, lambda: formulate(data, whole=False), limits, seed=seed, start=start)

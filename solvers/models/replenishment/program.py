@@ -1,15 +1,17 @@
 r"""The integer program.
 
-Bundles go to pods (x), pods to stations (y); the load w of a pod counts at its station:
+Bundles go to pods (x) or are left (l), pods go to stations (y), and the load of a pod counts at its
+station (w):
 
 .. math::
 
     \sum_p x_{bp} + l_b = 1, \quad x_{bp} \le \sum_s y_{ps} \le 1, \quad
     \sum_b space_b\, x_{bp} \le \sum_s w_{ps}, \\
-    w_{ps} \le podspace_p\, y_{ps}, \quad \sum_p w_{ps} \le stationspace_s
+    w_{ps} \le \min(podspace_p, stationspace_s)\, y_{ps}, \quad \sum_p w_{ps} \le stationspace_s
 
-Splitting x by stations instead would be equivalent but would multiply the columns by the number of
-stations. Spaces are counted in parts of a space unit, so all numbers except the costs are integers.
+Giving x an index s as well, instead of having w, would be equivalent but would multiply the columns
+x by the number of stations. Spaces are counted in sixteenths of a space unit, so all numbers except
+the costs are integers.
 """
 
 from __future__ import annotations
@@ -77,8 +79,9 @@ def program(data: Replenishment, columns: Columns, *, whole: bool) -> LinearProg
     columns
         Its columns.
     whole
-        Whether loads are declared integer. They are integer if x and y are; CP-SAT requires the
-        declaration, while branch and bound is ten times as fast without it.
+        Whether loads are declared integer. The optimum is the same, as integer loads exist for all
+        feasible integer x and y; CP-SAT requires the declaration, while branch and bound is ten
+        times as fast without it.
     """
     bundles, (pods, stations) = len(data.space), data.trip_s.shape
     bundle, pod, brought, station = columns.bundle, columns.pod, columns.brought, columns.station

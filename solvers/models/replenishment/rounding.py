@@ -38,8 +38,8 @@ def solve(
     data
         The problem.
     limits
-        `iterations` limits the relaxation. If it does not suffice, the greedy rule decides alone,
-        with a weak bound.
+        `iterations` limits the simplex iterations of the relaxation. If they do not suffice, the
+        greedy rule decides alone, and the bound is weak.
     seed
         Seed of the solver. Default 0.
     start

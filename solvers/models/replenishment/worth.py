@@ -1,20 +1,21 @@
 r"""The worth of a bundle in a pod: the robot time that its units save by raising the pile-on.
 
-On each visit, a pod can serve the accumulated demand for its SKUs. Let :math:`D_k`, the accumulated
-demand for SKU k on a visit, be Poisson with mean :math:`\mu_k`. A pod with q units of k serves
-:math:`g_k(q) = E[\min(q, D_k)]` of the units demanded, so u more units add the *coverage*
-:math:`g_k(q + u) - g_k(q)`, which is large if the SKU is in demand and scarce, and small if it is
-plentiful. With each line of SKU k, :math:`a_{kh}` lines of SKU h are ordered on average
-(*affinity*); if the pod holds h too, these lines need no separate visit. Each additional unit
-served saves its share of a visit:
+On each visit, a pod can serve the demand for its SKUs that has accumulated since its last visit.
+Let :math:`D_k`, this demand for SKU k in units, be Poisson with mean :math:`\mu_k`. A pod with q
+units of k serves :math:`g_k(q) = E[\min(q, D_k)]` units on average, so u more units add the
+*coverage* :math:`g_k(q + u) - g_k(q)`, which is large if the SKU is in demand and scarce in the
+pod, and small if it is plentiful there. With each line of SKU k, :math:`a_{kh}` lines of SKU h are
+ordered on average (*affinity*); if the pod holds h too, these lines need no separate visit. Each
+additional unit served saves its share of the robot time of a visit:
 
 .. math::
 
     worth_{bp} = \frac{visit}{pileon} \bigl(g_k(q_{kp} + u_b) - g_k(q_{kp})\bigr)
     \Bigl(1 + \sum_{h \in p, h \ne k} a_{kh}\Bigr)
 
-with k the SKU of bundle b. (Spread of SKUs over pods: Lamballais, Roy, de Koster 2020; affinity:
-the "Correlative" rule of RAWSim-O. Expressing both in robot time is our addition.)
+with k the SKU of bundle b and :math:`q_{kp}` the units of k in pod p. (Spread of SKUs over pods:
+Lamballais, Roy, de Koster 2020; affinity: the "Correlative" rule of RAWSim-O. Expressing both in
+robot time is our addition.)
 """
 
 from __future__ import annotations
@@ -93,7 +94,7 @@ def expected_served(units: NDArray[np.int64], mean: NDArray[np.float64]) -> NDAr
     units
         Units q, any shape.
     mean
-        Mean of the demand; broadcasts with `units`.
+        Mean :math:`\mu` of the demand; broadcasts with `units`.
 
     Returns
     -------

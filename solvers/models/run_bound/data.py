@@ -1,8 +1,8 @@
-"""The input of the bound: stations, robots, stock, refill and demand over a window of time.
+"""The input of the bound on picked units: stations, robots, stock, refill, demand, time window.
 
-Every number is an extreme: a *least* time or a *largest* amount. The bound is proven for all runs
-within these limits, so a caller who is unsure of a number should pass a more generous one (0 for a
-changeover, infinity for the demand).
+Except for the length of the window, every number is an extreme: a *least* time or a *largest*
+amount. The bound is proven for all runs within these limits, so a caller who is unsure of a number
+should pass a more generous one (0 for a changeover, infinity for the demand).
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ class PickStations:
     Parameters
     ----------
     unit_transfer_s
-        Time for which one unit occupies the station, in s.
+        Least time for which the pick of one unit occupies the station, in s.
     unit_pick_s
-        Time for which one unit holds the robot, in s. The longer of this and `unit_transfer_s` must
-        be positive.
+        Least time for which the pick of one unit occupies the robot, in s. The longer of this and
+        `unit_transfer_s` must be positive.
     changeover_s
         Least time from the moment a robot may leave the head of the queue until the next robot can
         be served, in s; 0 is always valid.
@@ -71,7 +71,7 @@ class PickStations:
 
     @property
     def change_s(self) -> NDArray[np.float64]:
-        """Least time from the start of a visit's last pick to that of the next visit's first pick.
+        """Least time between the starts of a visit's last pick and the next visit's first pick.
 
         Shape (S,), in s.
         """
@@ -85,7 +85,7 @@ class Refill:
     Parameters
     ----------
     bundle_transfer_s
-        Time for which one bundle occupies the station and the robot, in s, positive.
+        Least time for which storing one bundle occupies the station and the robot, in s, positive.
     inbound_s, outbound_s
         As for `PickStations`.
     bundle_units
@@ -123,8 +123,8 @@ class Stock:
     Parameters
     ----------
     pod_units
-        Maximum number of units that each pod can hold at the start of the window, shape (P,): its
-        contents if they are known, otherwise what fits (capacity / least space of a unit).
+        Largest possible number of units in each pod at the start of the window, shape (P,): the
+        actual number if it is known, otherwise what fits (capacity / least space of a unit).
     largest_pod_units
         Maximum number of units that any pod can hold at any time.
 
@@ -150,18 +150,18 @@ class Orders:
     Parameters
     ----------
     units
-        Units asked for and not yet picked when the window begins (work in progress included) plus
-        those of the orders that arrive in it. Default: unlimited, as with a backlog of constant
-        size.
+        Number of units ordered but not yet picked when the window begins (work in progress
+        included), plus the units of the orders that arrive in the window. Default: unlimited, as
+        with a backlog of constant size.
     largest_order_units
         Maximum number of units in an order; infinity if unknown. Default: unknown.
     lone_units
-        Maximum number of units of orders that are served whole from one visit. If the demand is
-        known, these are the units of the orders for which some pod holds all SKUs. Default:
-        unlimited.
+        Maximum total number of units of all orders that are each served whole in one visit. If the
+        orders are known: the units of those orders for which there is a pod that holds all SKUs of
+        the order. Default: unlimited.
     join_visits
-        Whether an order assigned to the station while a pod is served there can still be served
-        from that visit. Default: yes, which is always valid.
+        Whether an order that is assigned to a station during a visit can still be served in that
+        visit. Default: yes, which is always valid.
 
     Raises
     ------
@@ -191,7 +191,7 @@ class RunBound:
     robots
         Number R of robots.
     picking, refill, stock, orders
-        Capabilities of the stations, contents of the pods, and demand.
+        The pick stations, the replenishment stations, the contents of the pods, and the demand.
 
     Raises
     ------
@@ -229,8 +229,8 @@ class RunBound:
         """Maximum number of units in one visit at each pick station, shape (S,).
 
         A pod is not refilled while units are picked from it, so a visit cannot yield more than the
-        pod can hold. If no order joins a running visit, the visit cannot yield more than the open
-        orders ask for, either.
+        pod can hold. If orders cannot join a running visit (`Orders.join_visits`), a visit cannot
+        yield more than the open orders ask for, either.
         """
         largest = np.full(len(self.picking.order_slots), float(self.stock.largest_pod_units))
         if self.orders.join_visits or math.isinf(self.orders.largest_order_units):
@@ -241,9 +241,10 @@ class RunBound:
 
     @property
     def end_effect_s(self) -> float:
-        """Maximum time per robot by which the visits counted extend outside the window, in s.
+        """Maximum time that a robot's counted visits and drives take outside the window, in s.
 
-        This is a drive in before the window, and a service and a drive out after it.
+        It consists of a drive in before the window, and of a service (one unit or bundle) and a
+        drive out after it.
         """
         inbound = np.concatenate([self.picking.inbound_s, self.refill.inbound_s])
         outbound = np.concatenate(
@@ -257,7 +258,7 @@ class RunBound:
 
 @dataclass(frozen=True)
 class Throughput:
-    """Counts in the window, of the best conceivable run or of a simulated run.
+    """Counts in the window: of a simulated run, or at the optimum of the linear program.
 
     Attributes
     ----------
@@ -277,7 +278,7 @@ class Throughput:
 
 
 def objective(data: RunBound, values: Throughput) -> float:
-    """Return units per hour.
+    """Return the units picked per hour.
 
     Parameters
     ----------

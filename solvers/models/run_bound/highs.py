@@ -1,4 +1,4 @@
-"""The proven bound, solved by HiGHS and repaired so that no solver error can lower it."""
+"""The proven bound, computed by HiGHS and repaired so that no solver error can make it too low."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def solve(
     seed: int = 0,
     start: Throughput | None = None,
 ) -> Solution[Throughput]:
-    """Return an upper bound on the units per hour of any run, and the point that reaches it.
+    """Return an upper bound on the units per hour of any run, and the linear program's optimum.
 
     Parameters
     ----------
@@ -37,8 +37,8 @@ def solve(
 
     Returns
     -------
-    The best point and, as `bound`, the proven units per hour; work is counted in simplex
-    iterations.
+    The counts at the optimum (none if the limit was reached before) and, as `bound`, the proven
+    bound in units per hour; work is counted in simplex iterations.
     """
     begin = perf_counter()
     linear, columns = program(data)

@@ -1,4 +1,4 @@
-r"""The least robot time of a visit for bringing its pod and taking it away.
+r"""The least robot time that each visit requires to bring its pod and to take it away.
 
 A pod comes to a station from a storage location, where it was lifted, or directly from another
 station; it leaves for a storage location or another station. A drive from or to storage belongs to
@@ -26,7 +26,7 @@ from rmfs.solvers.models.checks import costs, number
 
 
 class Legs(NamedTuple):
-    """Least robot time per visit of each station, in s, shape (S,): `inbound_s`, `outbound_s`."""
+    """Least robot times per visit, to bring a pod and to take it away, in s, both shape (S,)."""
 
     inbound_s: NDArray[np.float64]
     outbound_s: NDArray[np.float64]
@@ -45,9 +45,9 @@ def visit_legs(
     Parameters
     ----------
     from_storage_s
-        Least driving time from any storage location to each station, shape (S,), in s.
+        Least driving time from a storage location to each station, shape (S,), in s.
     to_storage_s
-        Least driving time from each station to any storage location, shape (S,), in s.
+        Least driving time from each station to a storage location, shape (S,), in s.
     between_s
         Least driving time from station to station, shape (S, S), in s; +inf where pods do not go
         straight from one to the other. The diagonal is not read: a pod that stays makes no new

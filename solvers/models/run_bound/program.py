@@ -1,11 +1,11 @@
 r"""The linear program behind the proven bound; each of its inequalities holds for every run.
 
 A *pick* occupies station s for :math:`\tau_s` and the robot for :math:`\pi_s` seconds from its
-start. A *visit* is a stay of a pod at the head of a station; it counts if a pick starts in the
-window :math:`[0, H]`. :math:`n_s` units and :math:`v_s` visits are counted at pick station s,
-:math:`m_q` bundles and :math:`z_q` visits at replenishment station q. With :math:`a_s =
-\max(\tau_s, \pi_s)` and :math:`b_s = \max(\tau_s, \pi_s + c_s)`, where :math:`c_s` is the least
-changeover:
+start. A *visit* is a stay of a pod at the head of a station's queue; it counts if a pick (at a
+replenishment station: the storing of a bundle) starts during the visit and in the window
+:math:`[0, H]`. :math:`n_s` units and :math:`v_s` visits are counted at pick station s, :math:`m_q`
+bundles and :math:`z_q` visits at replenishment station q. With :math:`a_s = \max(\tau_s, \pi_s)`
+and :math:`b_s = \max(\tau_s, \pi_s + c_s)`, where :math:`c_s` is the least changeover:
 
 1. :math:`a_s n_s + (b_s - a_s) v_s \le H + b_s`. Picks of one visit start at least :math:`a_s`
    apart; the last pick of a visit and the first pick of the next visit start at least :math:`b_s`
@@ -15,12 +15,12 @@ changeover:
    :math:`u_s` units (see `RunBound.visit_units`).
 4. :math:`m_q \le z_q B`, and :math:`\beta_q m_q \le H + \beta_q`: a visit stores at most B bundles,
    and a bundle occupies its station for :math:`\beta_q`.
-5. Robots: :math:`\sum_s a_s n_s + (w_s + \pi_s - a_s) v_s + \sum_q \beta_q m_q + w_q z_q \le R\,(H
-   + E)` with R robots. A visit with k units holds its robot for :math:`(k - 1) a_s + \pi_s`, a
-   visit with k bundles for :math:`k \beta_q`. Each visit needs a drive in and a drive out, which
-   together take at least :math:`w_s` or :math:`w_q` seconds (`visit_legs` divides a drive between
-   two stations into halves, so nothing counts twice). Of these times, only the drive in of a
-   robot's first visit, and the last service and the drive out of its last visit, can lie outside
+5. Robots: :math:`\sum_s [a_s n_s + (w_s + \pi_s - a_s) v_s] + \sum_q [\beta_q m_q + w_q z_q] \le
+   R\,(H + E)` with R robots. A visit with k units holds its robot for at least :math:`(k - 1) a_s
+   + \pi_s`, one with k bundles for :math:`k \beta_q`. Each visit needs a drive in and a drive out,
+   which together take at least :math:`w_s` or :math:`w_q` seconds (`visit_legs` divides a drive
+   between two stations into halves, so nothing counts twice). Of these times, only the drive in of
+   a robot's first visit, and the last service and the drive out of its last visit, can lie outside
    the window: at most E seconds per robot (`RunBound.end_effect_s`).
 6. Content: :math:`\sum_s n_s \le \sum_p K_p y_p + g \sum_q m_q`, :math:`0 \le y_p \le 1`,
    :math:`\sum_p y_p \le \sum_s v_s`, where :math:`y_p` is 1 if units are picked from pod p. A unit
@@ -32,13 +32,14 @@ changeover:
    visit serves it whole, otherwise *spread*. Of the :math:`n_s` units, :math:`l_s` go to lone
    orders, which have at most L units in total. A spread order served in a visit was open when the
    visit began or is still open when it ends, so a visit serves at most :math:`2 C_s` of them, with
-   :math:`C_s` slots. Each spread order needs at least two visits, except for orders cut off by
-   either end of the window, at most :math:`C_s` at each end. So there are no more than :math:`C_s
-   (v_s + 1)` spread orders, of at most U units each.
+   :math:`C_s` slots. Each spread order is served in at least two visits within the window, unless
+   an end of the window cuts it off, which happens to at most :math:`C_s` orders at each end. So
+   there are no more than :math:`C_s (v_s + 1)` spread orders, of at most U units each.
 
-So the counts of every run are a feasible point, and their total is at most the optimum. The
-reported bound is not the optimum found by a solver but the dual value of its multipliers, made dual
-feasible and rounded up, which no solver error can push below the optimum.
+So the counts of every run are a feasible point, and the units picked in the run are at most the
+optimum. The reported bound is not the optimum found by a solver but the dual value of the solver's
+multipliers after a repair that makes them dual feasible. This value is rounded up, and no solver
+error can push it below the optimum.
 """
 
 from __future__ import annotations
@@ -58,7 +59,7 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Columns:
-    """Column indices of the program: per pick station, replenishment station and pod."""
+    """Column indices: per pick station, per replenishment station and per distinct pod content."""
 
     units: NDArray[np.int64]
     visits: NDArray[np.int64]
@@ -69,7 +70,7 @@ class Columns:
 
 
 def violations(data: RunBound, values: Throughput) -> list[str]:
-    """Return a message if the counts violate an inequality; empty if they satisfy all of them.
+    """Return a list with one message if the counts violate any inequality, otherwise an empty list.
 
     The counts of every simulated run must satisfy all inequalities.
 

@@ -12,13 +12,13 @@ from rmfs.solvers.models.run_bound.data import RunBound
 def single_bounds(data: RunBound) -> dict[str, float]:
     r"""Return upper bounds on the units per hour, each from a single resource.
 
-    With the symbols of `program`, the bounds on the units picked in the window are
+    With the symbols of the module `program`, the units picked in the window are at most
 
-    - ``stations``: stations never wait for a pod, :math:`\sum_s (H / a_s + 1)`;
-    - ``robots``: all visits go to the station with the least robot time per unit, with the largest
-      possible pile-on :math:`u_s`: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`;
-      where visits for a single unit take less time per unit, their time :math:`w_s + \pi_s` is used
-      instead;
+    - ``stations``: :math:`\sum_s (H / a_s + 1)`, as if stations never waited for a pod;
+    - ``robots``: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`, as if all visits
+      went to the station with the least robot time per unit, with the largest possible pile-on
+      :math:`u_s`; at a station where visits for a single unit take less time per unit, their time
+      :math:`w_s + \pi_s` is used instead;
     - ``demand``: the units ordered.
 
     Parameters
@@ -28,8 +28,8 @@ def single_bounds(data: RunBound) -> dict[str, float]:
 
     Returns
     -------
-    The bounds by name, in units per hour; each is at least that of the linear program, up to
-    rounding.
+    The bounds by name, converted to units per hour; each is at least that of the linear program, up
+    to rounding.
     """
     picking = data.picking
     cadence = picking.cadence_s

@@ -1,12 +1,13 @@
 """Beam search followed by a local search, for inputs too large for the exact methods.
 
-In each step every kept partial plan is extended by a visit of every pod, and the best few plans are
-kept. The orders that a pod would serve in part are opened while slots are free, those missing the
-fewest SKUs first. A second branch opens only orders of which the pod serves at least half of the
-missing SKUs. Plans are ranked by the number of SKUs that their orders still miss in total; SKUs of
-open orders count twice, as an open order holds a slot. All plans of a step are scored together, by
-one matrix product. Deterministic: ties go to the plan kept earlier, then to the pod with the lower
-index.
+In each step, every kept partial plan is extended by a visit of each pod in turn, and the best few
+of the extended plans are kept. There are two extensions for each plan and pod. The first opens new
+orders for which the pod holds some but not all SKUs, while slots are free; orders that then miss
+the fewest SKUs come first. The second does the same, but only with orders for which the pod holds
+at least half of the SKUs. Plans are ranked by the number of SKUs that their orders still miss in
+total; SKUs of open orders count twice, as an open order holds a slot. All plans of a step are
+scored together, by one matrix product. The search is deterministic: ties go to the first kind of
+extension, then to the plan kept earlier, then to the pod with the lower index.
 """
 
 from __future__ import annotations
@@ -53,13 +54,13 @@ def solve(
     seed
         Seed of the local search. Default 0.
     start
-        A plan; the result is never worse. Default: none.
+        A feasible plan; the result is never worse. Default: none.
     width
         Number of partial plans kept per visit. Default `WIDTH`.
 
     Returns
     -------
-    A feasible plan with the bound of the covering problem.
+    A feasible plan, and as bound that of `visits_bound`.
     """
     began = time.perf_counter()
     if not data.feasible:

@@ -33,7 +33,7 @@ def covering(data: Sequencing) -> LinearProgram:
 
 
 def visits_bound(data: Sequencing) -> float:
-    """Return a lower bound on the number of visits of every plan; +inf if there is no plan.
+    """Return a lower bound on the number of visits of every plan; +inf if no plan is feasible.
 
     Parameters
     ----------

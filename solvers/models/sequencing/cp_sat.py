@@ -1,4 +1,4 @@
-"""Rack sequencing, solved by CP-SAT, with at most as many visits as a heuristic plan."""
+"""Rack sequencing, solved by CP-SAT; a plan may have at most as many visits as a heuristic one."""
 
 from __future__ import annotations
 

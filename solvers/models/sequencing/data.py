@@ -1,9 +1,10 @@
 r"""Rack sequencing at one pick station: the problem, and the conditions that a plan must meet.
 
 Orders are processed with at most C of them open at a time, pods visit the station one after the
-other, and an open order takes from a visiting pod every SKU it still misses. The number of visits
-is minimised (the mobile robot order picking problem of Boysen, Briskorn, Emde 2017); consecutive
-visits of the same pod count once, and the stock of a pod suffices for all orders at the station.
+other, and an open order takes from a visiting pod all SKUs that the order misses and the pod holds.
+The number of visits is minimised (the mobile robot order picking problem of Boysen, Briskorn, Emde
+2017). Consecutive visits of the same pod count once. A pod that holds a SKU has enough units of it
+for all orders.
 
 A visit has three steps. First, open orders are served, and those now complete leave (set B). Then
 orders that this pod completes alone come and go one after the other, each occupying a slot for a
@@ -98,7 +99,7 @@ class VisitSequence:
     pods
         The visiting pods in sequence, shape (T,).
     start
-        Visit during which an order is opened, shape (O,); -1 for those open before.
+        Visit during which each order is opened, shape (O,); -1 if open before the first visit.
     """
 
     pods: Integers

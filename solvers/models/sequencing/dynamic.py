@@ -1,12 +1,14 @@
 """Exact dynamic program for small inputs: A* over the missing SKUs of each order.
 
-A state is the set of missing SKUs of every order (none: complete; some: open; all: not started,
-unless open before). A transition is one visit: the pod serves the open orders, completes further
-orders by itself if there is a slot, and some of the orders that it serves in part may be opened.
-(The states are those of Justkowiak, Kovalyov, Pesch 2024: completed orders, open orders, missing
-SKUs.) Each visit costs 1; the remaining cost is estimated by the largest number of visits that any
-single order still needs. As this estimate is never too high, the first complete state is optimal,
-and the smallest estimate among the states not yet examined is always a valid bound.
+A state consists of the missing SKUs of each order (none: the order is complete; some: open; all:
+not started, unless it was open before the first visit). A transition is one visit: the pod serves
+the open orders and, if there is a slot, completes further orders by itself; of the orders that it
+can serve only in part, any selection for which there are slots may be opened. (The states are those
+of Justkowiak, Kovalyov, Pesch 2024: completed orders, open orders, missing SKUs.) Each visit costs
+1. To estimate the remaining cost, the number of missing SKUs of each order is divided by the
+largest number of them on any pod and rounded up; the estimate is the maximum over the orders. As it
+is never too high, the first complete state examined is optimal, and the smallest total of past
+visits and estimate among the states not yet examined is always a valid bound.
 """
 
 from __future__ import annotations

@@ -1,10 +1,11 @@
 """Local search on the sequence of visits: remove a visit, then repair the plan.
 
 For a given sequence of visits, `still_open` decides when to open which order, as in interval
-scheduling: of the orders that waiting would delay, it opens those that end first. The search
-removes a visit, then tries random moves (exchange two visits, move a visit, or replace a pod) and
-keeps those that do not increase the number of incomplete orders. When every order is complete, the
-plan is one visit shorter, and the next visit is removed.
+scheduling: of the orders that waiting would delay, it opens those that would be complete first. The
+search removes the visit whose loss leaves the fewest orders incomplete, then tries random moves
+(exchange two visits, move a visit, or replace a pod) and keeps the moves that do not increase the
+number of incomplete orders. As soon as no order is incomplete, a shorter plan has been found, and
+the search goes on by removing another visit.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def improve(
 
     Returns
     -------
-    A feasible plan that is no longer, and the number of moves tried.
+    A feasible plan with at most as many visits, and the number of moves tried.
     """
     most = MOVES if moves is None else moves
     rng = np.random.default_rng(seed)
@@ -81,7 +82,8 @@ def still_open(data: Sequencing, pods: Integers) -> tuple[Integers, int]:
 
     Returns
     -------
-    When each order is opened (`NEVER` if it cannot be), and how many orders stay incomplete.
+    The visit at which each order is opened (-1 if it is open before the first visit, `NEVER` if it
+    is not opened), and how many orders stay incomplete.
     """
     end = _ends(data, pods)
     start = np.where(data.open, -1, NEVER)

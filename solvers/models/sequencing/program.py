@@ -1,8 +1,8 @@
-r"""The integer program, over the visits of a plan of known length.
+r"""Rack sequencing as an integer program over at most T visits, the length of a heuristic plan.
 
-A heuristic plan of T visits bounds the horizon. Binary columns: v_tp pod p makes visit t, s_ot
-order o has started by visit t, f_ot order o has finished by visit t, d_okt order o takes SKU k at
-visit t, c_ot order o comes and goes at visit t, r_t some order comes and goes at visit t.
+Binary columns: v_tp pod p makes visit t, s_ot order o has started by visit t, f_ot order o has
+finished by visit t, d_okt order o takes SKU k at visit t, c_ot order o comes and goes (starts and
+finishes) at visit t, r_t some order comes and goes at visit t. C is the number of order slots.
 
 .. math::
 
@@ -14,8 +14,8 @@ visit t, c_ot order o comes and goes at visit t, r_t some order comes and goes a
     & \textstyle\sum_o (s_{ot} - f_{ot}) \le C, \qquad f_{ot} - s_{o,t-1} \le c_{ot} \le r_t \\
     & \textstyle\sum_o (s_{o,t-1} - f_{ot} + c_{ot}) + r_t \le C
 
-The last row leaves a slot for orders that come and go: its sum counts the orders open before and
-after the visit.
+The last row leaves a slot for orders that come and go: the sum in it is the number of orders that
+are open both before and after the visit.
 """
 
 from __future__ import annotations
@@ -52,9 +52,12 @@ class Columns:
     pods
         The pods considered.
     visit, started, finished, passing, room
-        Columns v (T, pods), s and f (T + 1, O; row 0 is before the first visit), c (T, O), r (T,).
-    order, sku, take
-        Order and SKU of each need, shape (needs,), and the columns d, shape (T, needs).
+        Indices of the columns v, shape (T, pods); s and f, shape (T + 1, O), with row 0 for the
+        time before the first visit; c, shape (T, O); r, shape (T,).
+    order, sku
+        Order and SKU of each pair (an order and a SKU that it needs), shape (pairs,).
+    take
+        Indices of the columns d, shape (T, pairs).
     """
 
     data: Sequencing

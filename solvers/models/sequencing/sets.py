@@ -1,7 +1,8 @@
-"""The problem as bit sets without irrelevant pods and SKUs, for the search methods.
+"""Rack sequencing in bit sets for the search methods; SKUs and pods that do not matter are dropped.
 
-SKUs that no order needs are dropped, and so are pods whose needed SKUs are all on another pod (a
-pod that can do more never costs more). Of equal pods the one with the lowest index is kept.
+SKUs that no order needs are dropped. A pod is dropped if another pod holds all needed SKUs that it
+holds: the other pod can replace it, as every visit costs the same. Of pods that hold the same
+needed SKUs, the one with the lowest index is kept.
 """
 
 from __future__ import annotations
@@ -15,16 +16,16 @@ from rmfs.solvers.models.sequencing.data import Integers, Sequencing
 
 @dataclass(frozen=True)
 class Sets:
-    """Bit sets of SKUs.
+    """Sets of SKUs as integers: bit k stands for the k-th of the SKUs that some order needs.
 
     Parameters
     ----------
     needs
-        Needed SKUs of each order.
+        SKUs that each order needs.
     holds
-        Needed SKUs that each remaining pod holds.
+        Needed SKUs that each useful pod holds; see `useful_pods`.
     pod
-        The remaining pods in the numbering of the input, shape (len(holds),).
+        Index of each useful pod in the input, shape (len(holds),).
     """
 
     needs: tuple[int, ...]
@@ -52,8 +53,9 @@ def reduce(data: Sequencing) -> Sets:
 def useful_pods(data: Sequencing) -> Integers:
     """Return, in ascending order, the pods that hold needed SKUs and are not dominated.
 
-    A pod is dominated if another pod holds all of its needed SKUs and at least one more, or if a
-    pod with a lower index holds the same needed SKUs.
+    A SKU is needed if some order needs it. A pod is dominated if another pod holds all needed SKUs
+    that it holds and at least one further needed SKU, or if a pod with a lower index holds the same
+    needed SKUs.
 
     Parameters
     ----------

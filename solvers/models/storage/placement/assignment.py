@@ -22,7 +22,7 @@ def solve(
 
 
 def solve_by(data: Placement, solver: Solver) -> Solution[NDArray[np.int64]]:
-    """Find the cheapest place of every pod by a solver of assignment problems.
+    """Find the placement with the least robot time by the given solver of assignment problems.
 
     Parameters
     ----------

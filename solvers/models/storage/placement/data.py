@@ -1,4 +1,4 @@
-r"""The problem: a batch of pods that need a place, and the places that are free.
+r"""The problem: a batch of pods to be stored, and the free storage locations (places).
 
 .. math::
 
@@ -31,7 +31,7 @@ class Placement:
         Robot time from where each pod is now to each place, set-down included, shape (P, L), in s;
         +inf where a pod may not be stored.
     access_s
-        Robot time that a future visit takes between each place and the stations, both ways, shape
+        Robot time for taking a pod from each place to a station and back on a future visit, shape
         (L,), in s.
     visits
         Number of visits to stations that each pod is expected to make from its new place, shape

@@ -21,13 +21,13 @@ def solve(
 ) -> Solution[NDArray[np.int64]]:
     """Let the pods, in descending order of expected visits, take the cheapest remaining place each.
 
-    For the bound, every pod takes its cheapest place, even if others take it too.
+    The bound is computed as if every pod took its cheapest place, even if others take it too.
 
     Returns
     -------
     The place of each pod, shape (P,); ties go to the lowest index. The status is INFEASIBLE if no
-    place is allowed for some pod, and LIMIT if a pod is left without a place for another reason:
-    the rule never revises a choice, so a placement may exist.
+    place is allowed for some pod, and LIMIT if a pod is left without a place for another reason. In
+    the latter case, a feasible placement may exist, because the rule never revises a choice.
     """
     begin = perf_counter()
     cost_s = data.cost_s

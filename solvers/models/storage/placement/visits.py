@@ -26,7 +26,7 @@ def expected_visits(
     pile_on: float,
     pods: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
-    """Estimate the visits of pods from stock, popularity and backlog.
+    """Estimate how often each pod will visit a station, given stock, popularity and backlog.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The interval model, solved by CP-SAT."""
+"""The integer program for the zones of stays, solved by CP-SAT."""
 
 from __future__ import annotations
 

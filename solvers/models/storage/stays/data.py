@@ -1,12 +1,13 @@
-r"""The problem: stays with known start and end, and zones of equal places.
+r"""The problem: stays of pods, with known begin and end, and zones of equal storage locations.
 
 .. math::
 
     \min \sum_{sz} c_{sz} x_{sz}, \quad \sum_z x_{sz} = 1, \quad
     \sum_{s \text{ present at } t} x_{sz} \le k_z \text{ for all } t, \quad x \in \{0, 1\}
 
-Here :math:`x_{sz}` is 1 if stay s is in zone z, and zone z has :math:`k_z` places. A stay lasts
-from the moment when a place is assigned to a pod until the pod has left it, ``[begin, end)``.
+Here :math:`x_{sz}` is 1 if stay s is in zone z, and zone z has :math:`k_z` storage locations
+(places). A stay lasts from the moment when a place is assigned to a pod until the pod has left that
+place, ``[begin, end)``.
 (Weidinger, Boysen, Briskorn 2018 decide on single places, that is, zones of one place.) Places of a
 zone are interchangeable: if no more than :math:`k_z` stays overlap at any time, each can have a
 place of its own, because interval graphs are perfect. For a pod that is already stored, there is
@@ -33,10 +34,10 @@ class Stays:
     begin_s, end_s
         Begin and end of each stay, shape (S,), in s; every stay has a positive length.
     cost_s
-        Robot time of a stay in each zone (the way there and the way to the next station), shape (S,
-        Z), in s; +inf where it is not allowed.
+        Robot time of each stay in each zone (the way there and the way to the next station), shape
+        (S, Z), in s; +inf where the stay is not allowed.
     capacity
-        Places of each zone, shape (Z,).
+        Number of places of each zone, shape (Z,).
 
     Raises
     ------
@@ -62,13 +63,14 @@ class Stays:
     def periods(self) -> tuple[NDArray[np.int64], NDArray[np.int64], int]:
         """Find the fewest moments (*periods*) at which occupied places must be counted.
 
-        The number of stays present can only grow until a stay ends, so it suffices to count just
-        before a stay ends, when the stays present form a maximal set of simultaneous stays.
+        Until a stay ends, the number of stays present can only grow, so it suffices to count just
+        before each end that is the first after a begin; the stays then present form a maximal set
+        of simultaneous stays.
 
         Returns
         -------
-        First period of each stay and the period after its last one, both of shape (S,), and the
-        number of periods.
+        Index of the first period of each stay, and one more than the index of its last period, both
+        of shape (S,); and the number of periods.
         """
         ended = np.searchsorted(np.sort(self.end_s), self.begin_s, side="right")
         distinct, first = np.unique(ended, return_inverse=True)

@@ -1,12 +1,12 @@
-r"""Stays in two zones as a minimum-cost flow, exact at any size.
+r"""Stays in two zones as a minimum-cost flow: an optimal solution at any size.
 
 With two zones, a stay that is not in zone 0 is in zone 1. The :math:`k_0` places of zone 0 move
 along the periods as units of flow: a unit either waits from one period to the next or follows the
-arc of a stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. As the stays present in period t that
-are not in zone 0 must fit into zone 1, at most :math:`k_0 - (present_t - k_1)^+` units may wait in
-period t. (This is the k-colouring of intervals by flow of Carlisle and Lloyd 1995, with a limit on
-waiting.) A stay that must be in zone 0 takes a unit out of the flow when it begins and puts it back
-when it ends.
+arc of a stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. Of the :math:`present_t` stays
+present in period t, those that are not in zone 0 must fit into zone 1, so at most
+:math:`k_0 - (present_t - k_1)^+` units may wait in period t. (Carlisle and Lloyd 1995 solve the
+k-colouring of intervals as such a flow; the limit on waiting is added here.) For a stay that must
+be in zone 0, a unit is taken out of the flow when the stay begins and put back when it ends.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Stays choose zones in turn: those with the greatest cost difference per hour first.
+"""Stays choose zones in turn: those with the greatest cost difference per hour of the stay first.
 
-If this leaves a stay without a zone, stays choose in the order in which they begin.
+If this leaves a stay without a zone, all stays choose again, in the order in which they begin.
 """
 
 from __future__ import annotations
@@ -27,15 +27,14 @@ def solve(
 
     Stays with the largest cost difference between zones, per hour of the stay, choose first,
     because a good place is better used by several short stays than by a long one. If that leaves a
-    stay without a zone, stays choose again in the order in which they begin. This second sequence
-    can fail only if a zone is forbidden for some stay, or if the zones together have too few
-    places.
+    stay without a zone, all stays choose again, in the order in which they begin. This second
+    sequence can fail only if a zone is forbidden for some stay, or if the zones together have too
+    few places. The bound is computed as if every stay had its cheapest zone, full or not.
 
     Returns
     -------
-    The zone of each stay, shape (S,); ties go to the lowest index. The status is LIMIT if both
-    sequences fail, and INFEASIBLE if no zone is allowed for some stay. For the bound, every stay
-    has its cheapest zone.
+    The zone of each stay, shape (S,); ties go to the lowest index. The status is INFEASIBLE if no
+    zone is allowed for some stay, and LIMIT if both sequences fail for another reason.
     """
     begin = perf_counter()
     stays, zones = data.cost_s.shape

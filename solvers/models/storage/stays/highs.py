@@ -1,4 +1,4 @@
-"""The interval model, solved by HiGHS."""
+"""The integer program for the zones of stays, solved by HiGHS."""
 
 from __future__ import annotations
 

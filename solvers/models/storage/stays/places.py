@@ -1,4 +1,4 @@
-"""Assignment of a place within its zone to each stay; no two stays share a place at any time."""
+"""Choice of one place for each stay within its zone; no two stays share a place at any time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def places(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.int64]:
     """Give every stay, when it begins, the lowest-numbered free place of its zone.
 
     Places of a zone are numbered from 0. As stays are processed in the order in which they begin,
-    no more places are needed than there are simultaneous stays (interval colouring).
+    a zone needs no more places than it has stays at any one time (interval colouring).
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def places(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.int64]:
     Raises
     ------
     ModelError
-        If the zones are not a feasible solution.
+        If the choice of zones is not feasible.
     """
     broken = violations(data, zone)
     require(not broken, "zone", "; ".join(broken))

@@ -1,14 +1,14 @@
-r"""The integer program, with the pods of each zone carried over from period to period.
+r"""The integer program, in which the number of pods in each zone is carried over between periods.
 
 .. math::
 
     y_{zt} = y_{z,t-1} + \sum_{s \text{ begins in } t} x_{sz}
     - \sum_{s \text{ is over in } t} x_{sz}, \qquad 0 \le y_{zt} \le k_z
 
-where :math:`y_{zt}` is the number of pods in zone z in period t (`Stays.periods`). This is
-equivalent to one constraint per maximal set of simultaneous stays, but the number of nonzeros grows
-linearly with the number of stays instead of quadratically. For each zone by itself the matrix is a
-network matrix, so the relaxation is tight.
+where :math:`y_{zt}` is the number of pods in zone z in period t (`Stays.periods`). These rows are
+equivalent to one constraint per zone and maximal set of simultaneous stays, but the number of
+nonzeros grows linearly with the number of stays instead of quadratically. The rows of a single zone
+form a network matrix, so the relaxation is strong.
 """
 
 from __future__ import annotations

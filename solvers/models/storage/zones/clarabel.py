@@ -1,8 +1,9 @@
 """The optimal steady state, solved by the interior-point method Clarabel through cvxpy.
 
-cvxpy compiles a problem of a given size into a cone program once. Every number of `Zones` is a
-parameter of that program (disciplined parametrised programming), so solving again with other
-numbers skips the compilation. Each solve starts cold, so its result depends on its input alone.
+For each pair of a number of classes and a number of zones, cvxpy compiles the problem into a cone
+program once. All values in `Zones` are parameters of that program (disciplined parametrised
+programming), so solving again with other values skips the compilation. Each solve starts cold, so
+its result depends on its input alone.
 """
 
 from __future__ import annotations

@@ -7,9 +7,10 @@ r"""The problem: the mean number of pods of each class in each zone in the stead
     \sum_j x_{ij} = m_i, \quad \sum_i x_{ij} \le k_j, \quad x \ge 0
 
 Of the :math:`m_i` pods of class i, :math:`x_{ij}` are in zone j on average; the zone has
-:math:`k_j` places. A pod of class i is visited :math:`r_i` times an hour. A visit to a pod in zone
-j takes :math:`t_{ij}` seconds of robot time and :math:`\gamma_j f_j` seconds of delay, which grows
-with the traffic :math:`f_j` of the zone. The objective is robot seconds per hour. Without
+:math:`k_j` storage locations (places). A pod of class i visits a station :math:`r_i` times an hour.
+A visit by a pod from zone j takes :math:`t_{ij}` seconds of robot time plus a delay of
+:math:`\gamma_j f_j` seconds, which grows with the traffic :math:`f_j` of the zone: the number of
+visits per hour that its pods make. The objective is robot time in seconds per hour. Without
 congestion this is the transportation problem of class-based storage (Hausman, Schwarz, Graves
 1976); the quadratic cost makes busy zones expensive before they are full.
 """
@@ -31,19 +32,21 @@ _TOLERANCE = 1e-9
 class Zones:
     """Classes of pods and zones of places.
 
+    The *traffic* of a zone is the number of visits to stations that its pods make per hour.
+
     Parameters
     ----------
     visit_s
         Robot time for taking a pod of each class from each zone to the station and back, shape
         (I, J), in s.
     rate_per_h
-        Visit rate of a pod of each class, shape (I,), in 1/h.
+        Number of visits that a pod of each class makes per hour, shape (I,), in 1/h.
     pods
         Number of pods of each class, shape (I,).
     places
         Number of places of each zone, shape (J,).
     congestion_s_h
-        By how much one more visit per hour to each zone delays every visit to it, shape (J,), in
+        Delay of a visit by a pod from each zone, divided by the traffic of the zone, shape (J,), in
         s h.
 
     Raises
@@ -78,7 +81,7 @@ class Zones:
 
 
 def traffic_per_h(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the visits to each zone, shape (J,), in 1/h.
+    """Return the traffic of each zone, that is, the visits that its pods make, shape (J,), in 1/h.
 
     Parameters
     ----------
@@ -100,7 +103,7 @@ class ZonePlan:
     standing
         Number of pods of each class in each zone, shape (I, J).
     price_per_h
-        Robot time that one more place in each zone would save, shape (J,), in s/h.
+        Robot time that one more place in the zone would save, for each zone, shape (J,), in s/h.
     """
 
     standing: NDArray[np.float64]

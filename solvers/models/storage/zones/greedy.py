@@ -1,4 +1,4 @@
-"""Turnover-based storage: the classes with the most visits take the best zones."""
+"""Turnover-based storage: the classes whose pods make the most visits take the best zones."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ _PORTIONS = 16
 def solve(
     data: Zones, limits: Limits = NO_LIMITS, *, seed: int = 0, start: ZonePlan | None = None
 ) -> Solution[ZonePlan]:
-    """Place classes in portions, most visited first, each portion where a visit takes least time.
+    """Place the classes by descending visit rate, in portions, each where a visit takes least time.
 
     The time includes the delay that one more visit causes to itself and to other visits. The price
-    of a place in a zone is the least robot time per hour that any pod there saves compared with the
-    best zone that still has room. It is never negative, and 0 if the zone is empty or no zone has
-    room.
+    of a place in a zone is the robot time per hour that a pod there saves compared with the best
+    zone that still has room, taken for the class there that saves least. The price is never
+    negative, and it is 0 if the zone is empty or no zone has room.
 
     Returns
     -------

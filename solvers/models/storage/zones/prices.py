@@ -1,25 +1,26 @@
-r"""The prices of places: the dual of the steady state, its bound, and the rule derived from it.
+r"""The prices of places: a bound by duality, and a rule that stores pods by the prices.
 
-Let :math:`p_j \ge 0` be the price of a place and :math:`d_j = 2 \gamma_j f_j` the delay that one
-more visit causes at the traffic :math:`f_j`. As :math:`\gamma f^2 \ge \gamma f_j^2 + 2 \gamma f_j
-(f - f_j)`, every :math:`p` and every :math:`f` give the bound
+Symbols not explained here are those of `zones.data`. Let :math:`p_j \ge 0` be the price of a place
+in zone j and :math:`d_j = 2 \gamma_j f_j` the delay that one more visit by a pod from the zone
+causes, to itself and to others, at the traffic :math:`f_j`. As :math:`\gamma f^2 \ge \gamma f_j^2 +
+2 \gamma f_j (f - f_j)`, every :math:`p` and every :math:`f` give the bound
 
 .. math::
 
     \sum_i m_i u_i - \sum_j k_j p_j - \sum_j \gamma_j f_j^2, \qquad
     u_i = \min_j r_i (t_{ij} + d_j) + p_j
 
-At the optimum it is equal to the robot time. :math:`u_i` is the hourly cost of a pod of class i in
-its best zone; the rule calls it the *worth* of the pod. The rule rates the stay of a pod at a place
-by
+For an optimal plan and its prices, the bound equals the robot time. :math:`u_i`, the hourly cost of
+a pod of class i in its best zone, is called the *worth* of the pod. The rule rates the stay of a
+pod at a place by
 
 .. math::
 
     travel + d_j + stay \cdot (p_j - u_i)
 
-If travel is average and the stay lasts :math:`1 / r_i`, this is 0 for the zones that the plan uses
-and positive for all others. A short drive, or a stay that is untypical of the class, changes the
-ranking.
+If travel is average and the stay lasts :math:`1 / r_i`, this is 0 for the zones in which an optimal
+plan stores the class, and at least 0 for all others. A short drive, or a stay that is untypical of
+the class, changes the ranking.
 """
 
 from __future__ import annotations
@@ -45,7 +46,8 @@ class Prices:
     place_per_h
         Price of a place in each zone, shape (J,), in s/h.
     delay_s
-        Delay that one more visit to each zone causes to itself and other visits, shape (J,), in s.
+        Delay that one more visit by a pod from the zone causes to itself and to other visits, for
+        each zone, shape (J,), in s.
     worth_per_h
         Cost of a pod of each class in its best zone, shape (I,), in s/h.
     """
@@ -95,18 +97,18 @@ def price_bound(data: Zones, plan: ZonePlan) -> float:
 
 
 def expected_stay_h(rate_per_h: NDArray[np.float64], longest_h: float) -> NDArray[np.float64]:
-    """Estimate how long a pod stays until it is needed again.
+    """Estimate how long each pod stays at its place until it is needed again.
 
     Parameters
     ----------
     rate_per_h
         Visit rate of each pod, any shape, in 1/h.
     longest_h
-        Upper limit of the estimate, in h, positive; the plan is replaced by then.
+        Upper limit of the estimate, in h, positive.
 
     Returns
     -------
-    Hours, of the same shape.
+    Expected stay of each pod, of the same shape, in h.
     """
     stay_h: NDArray[np.float64] = 1.0 / np.maximum(rate_per_h, 1.0 / longest_h)
     return stay_h

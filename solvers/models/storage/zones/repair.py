@@ -17,7 +17,7 @@ def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
     Parameters
     ----------
     data
-        The problem; every pod fits.
+        The problem, with a place for every pod.
     standing
         Number of pods of each class in each zone, shape (I, J), almost feasible.
 

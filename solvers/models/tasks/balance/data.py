@@ -9,8 +9,8 @@ r"""The problem: free robots, waiting tasks, stations with queues, due times.
 where :math:`x_{rt}` is 1 if robot r does task t, w is the weight of lateness, and :math:`n_s \le
 room_s` is the number of robots sent to station s. The k-th of them finds :math:`queue_s + k - 1`
 pods before it, so each further robot sent to the same station costs more, which balances the
-stations. The waiting time is an estimate for the whole group and does not affect the lateness, so
-the cost of a pair of robot and task is fixed.
+stations. The waiting time is estimated for all robots sent to a station together and is not counted
+in the lateness, so the travel and lateness of one robot and its task do not depend on other pairs.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ r"""The problem: free robots and waiting tasks.
     \sum_r x_{rt} \le 1, \quad \sum_t x_{rt} \le 1
 
 where :math:`x_{rt}` is 1 if robot r does task t. The cost of leaving a task should be the cost of
-waiting for another robot; if it is infinite, the task must be done. Robots may stay idle. (This is
-the Hungarian dispatch of the literature, except that tasks may wait.)
+waiting for another robot; if it is infinite, the task must be done. Robots may stay idle. (In the
+literature, this is dispatching by the Hungarian method, but without the option to leave tasks.)
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.checks import costs
 
 LEFT = -1
-"""Stands for no robot, for a task that is left for later."""
+"""Given instead of the index of a robot for a task that is left for later."""
 
 
 @dataclass(frozen=True)

@@ -21,13 +21,14 @@ def solve(
 ) -> Solution[NDArray[np.int64]]:
     """Repeatedly match the pair that saves the most compared with leaving the task.
 
-    Tasks that must be done come first. The bound is computed as if a robot could do any number of
-    tasks.
+    Tasks that must be done come first, in pairs by ascending travel time. The bound is computed as
+    if a robot could do any number of tasks.
 
     Returns
     -------
     The robot of each task, or `LEFT`, shape (T,); ties go to the robot and task with the lowest
-    index. The status is LIMIT if a task that must be done is left.
+    index. The status is INFEASIBLE if some task must be done and no robot may do it, and LIMIT if a
+    task that must be done is left for another reason.
     """
     begin = perf_counter()
     robots, tasks = data.travel_s.shape

@@ -1,8 +1,9 @@
-r"""A bound that relaxes routes to pairs: every task needs a predecessor.
+r"""A lower bound: routes are relaxed to pairs of a task and its predecessor.
 
-The relaxation ignores that each place is used at most once, that chains of tasks must begin at a
-robot, and all times except the earliest ones. An assignment problem remains: task t follows robot r
-or task o, or is left. With :math:`s_o = \min_l store_{ol}`, following o costs
+The relaxation ignores that each place is used at most once and that chains of tasks must begin at a
+robot; and it takes the earliest possible arrival of each task instead of the actual one. An
+assignment problem remains: task t follows robot r or task o, or is left. With
+:math:`s_o = \min_l store_{ol}`, following o costs
 
 .. math::
 
@@ -29,7 +30,7 @@ _ROUNDING = 2.0**-40
 
 
 def relaxed_bound(data: TaskSequence) -> float:
-    """Return a lower bound on the cost of all routes.
+    """Return a lower bound on the total cost of every feasible plan of routes.
 
     Parameters
     ----------
@@ -62,7 +63,9 @@ def relaxed_bound(data: TaskSequence) -> float:
 def from_robots(
     data: TaskSequence,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the drives of robots to first tasks, via the best place if they carry a pod.
+    """Return the times of the robots' drives to the pods of tasks that they may do first.
+
+    Robots that carry a pod drive via the best place, where they store it.
 
     Parameters
     ----------
@@ -72,9 +75,9 @@ def from_robots(
     Returns
     -------
     Three arrays, in s, infinite for drives that are not allowed: the time at which each robot can
-    be at each pod, shape (R, T); its drive there less its storing drive, shape (R, T); and its
-    storing drive, shape (R,). The storing drive is the drive to the nearest place with the
-    pod that the robot is carrying (0 if it carries none).
+    be at the pod of each task, shape (R, T); its drive there less its storing drive, shape (R, T);
+    and its storing drive, shape (R,). On the storing drive, the robot takes the pod that it carries
+    to the nearest place (the time is 0 if it carries none).
     """
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
     stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)

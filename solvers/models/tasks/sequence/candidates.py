@@ -15,16 +15,19 @@ class Ways:
     """Arcs that routes may use.
 
     The *owner* of a pod to be stored is the robot that carries it initially, or the task that
-    brings it to a station. Robot r has the owner number r, task t has R + t.
+    brings it to a station. Robot r has the owner number r; task t has R + t, where R is the number
+    of robots.
 
     Attributes
     ----------
     first
         Arcs of robots without a pod to their first tasks, shape (A, 2): robot, task.
     onward
-        Arcs from a station via a place to the next pod, shape (B, 3): owner, place, task.
+        Arcs via the place where an owner's pod is stored to the pod of the next task, shape (B, 3):
+        owner, place, task.
     last
-        Arcs from a station to the place where a route ends, shape (C, 2): owner, place.
+        Arcs to the place where an owner's pod is stored at the end of a route, shape (C, 2): owner,
+        place.
     complete
         Whether all arcs of the problem are included.
     """
@@ -59,7 +62,7 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
     owner is one of the nearest to the task, by travel time via the best place. An arc is included
     for each of the best places of such a pair. Likewise, a task may come first for a robot without
     a pod if one is among the nearest to the other. A route may end at the places nearest to its
-    last station, or to its start if it has no task.
+    last station or, if it has no task, to its start.
 
     Parameters
     ----------

@@ -1,9 +1,10 @@
 r"""The CP-SAT model of routes: circuits through robots, tasks and places.
 
 The nodes are a depot, the robots, the tasks, and for every pod to be stored (the pod of a task, or
-a pod that a robot carries) the places it may go to. A route runs from the depot via its robot, then
-place, task, place, ..., back to the depot; an unused node has an arc to itself. Every place is used
-at most once. An arc from a place to task t imposes
+a pod that a robot carries) the places it may go to. A route runs from the depot to its robot, then
+alternately to tasks and places (a place comes first if the robot carries a pod), and back to the
+depot; an unused node has an arc to itself. Every place is used at most once. An arc from a place to
+task t imposes
 
 .. math:: arrive_t \ge arrive_o + service_o + store_{ol} + fetch_{lt} + bring_t
 

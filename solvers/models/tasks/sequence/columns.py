@@ -9,15 +9,15 @@ places, no plan costs less than
     \sum_t \min(v_t, skip_t) - \sum_l w_l + \sum_r \min_{p \in r} cost_p(v, w)
 
 where p runs over the routes of robot r (Lagrange; Desaulniers, Desrosiers, Solomon 2005, Column
-Generation, chapter 1). Prices are rounded to parts of a tick (a millisecond), and the pricing
-calculates with them in exact integers. The bound therefore holds to the last digit, even if the
-search for a cheapest route ends early. All costs are whole ticks, so the bound is rounded up to a
-tick.
+Generation, chapter 1). Prices are rounded to parts of a tick (a tick is a millisecond), and the
+pricing calculates with them in exact integers, so the bound holds to the last digit. It holds even
+if the search for a cheapest route ends early, because the search also bounds the cost of that route
+from below. All costs are whole ticks, so the bound is rounded up to a whole tick.
 
-At the end HiGHS chooses whole routes among those known. If a gap remains, every route that costs
-less, at the prices of the best bound, than its robot's cheapest one plus the gap is listed: no
-other route can be part of a better plan (Baldacci, Christofides, Mingozzi 2008), so the best choice
-among them is an optimum.
+At the end HiGHS chooses one route per robot among those known. If a gap remains, all routes are
+listed whose cost at the prices of the best bound is less than that of the same robot's cheapest
+route plus the gap. No other route can be part of a better plan (Baldacci, Christofides, Mingozzi
+2008), so the best choice among the listed routes and those of the best plan known is an optimum.
 """
 
 from __future__ import annotations
@@ -76,8 +76,8 @@ def solve(
     data
         The problem.
     limits
-        `deterministic_s` and `gap` apply. Default: none; the routes are then optimal unless too
-        many routes could be part of a better plan to list them all.
+        `deterministic_s` and `gap` apply. Default: none; the routes are then optimal, unless the
+        routes that could be part of a better plan are too many to be listed.
     seed
         Seed of HiGHS. Default 0.
     start

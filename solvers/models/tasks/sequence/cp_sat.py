@@ -50,7 +50,7 @@ def solve(
     start
         Feasible routes to start from. Default: none.
     ways
-        Arcs to consider; see `short_ways` for many tasks. Default: all.
+        Arcs to consider, such as those of `short_ways` if there are many tasks. Default: all.
 
     Returns
     -------

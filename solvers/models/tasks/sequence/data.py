@@ -50,20 +50,20 @@ class TaskSequence:
     fetch_s
         Empty drive from each place to the pod of each task, shape (L, T), in s.
     bring_s
-        Lift and drive of the pod of each task to its station, shape (T,), in s.
+        Time to lift the pod of each task and bring it to its station, shape (T,), in s.
     service_s
         Time that the pod of each task spends at its station, shape (T,), in s.
     store_s
         Drive from the station of each task to each place, set-down included, shape (T, L), in s.
     earliest_s, latest_s
-        Time window for the arrival at the station, shape (T,), in s. Robots wait for the earliest
-        time; after the latest (+inf: no limit) the task cannot be done.
+        Time window for the arrival at the station, shape (T,), in s. A robot that is early waits;
+        a task whose pod would arrive after the latest time (+inf: no limit) cannot be done.
     due_s
         Time when the pod should be at the station, shape (T,), in s; +inf without a due time.
     skip_s
         Cost of postponing each task, shape (T,), in s; +inf if it must be done.
     late_weight
-        Weight of a second of lateness in seconds of driving, an integer. Default 1.
+        Cost of one second of lateness, in seconds of driving; an integer. Default 1.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """Cheapest insertion: tasks by urgency, each where it adds the least cost to a route.
 
-An insertion between storing a pod and the next fetch chooses two places anew: that of the stored
-pod (on the way to the new task), and that of the new task's pod (on the way to the next).
+When a task is inserted, a place is chosen for its pod, and a new place may be chosen for the pod
+that the robot stores before it. Both choices take account of the drive to the pod fetched next.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def solve(
     seed: int = 0,
     start: Routes | None = None,
 ) -> Solution[Routes]:
-    """Insert tasks one by one: mandatory tasks before optional ones, then the most urgent first.
+    """Insert tasks one by one: mandatory tasks before optional ones, in each group by urgency.
 
     Parameters
     ----------
@@ -48,8 +48,9 @@ def solve(
 
     Returns
     -------
-    The routes; ties go to the robot and place with the lowest index. The status is LIMIT if a
-    task that must be done is left. The bound is that of `relaxed_bound`.
+    The routes; ties are broken by the indices of robots and places. If a task that must be done
+    cannot be inserted, there are no routes, and the status is LIMIT. The bound is that of
+    `relaxed_bound`.
 
     Raises
     ------

@@ -1,11 +1,12 @@
 """Neighbourhood search: tasks are taken out of the routes and inserted again (Shaw 1998).
 
-A step takes a few tasks out of the routes. Then these tasks, and the tasks that were left before,
-are inserted in random order, each where it adds the least cost (a few positions are skipped at
-random). Other steps choose new places for some pods. Slightly worse routes are accepted at first
-(threshold accepting, Dueck and Scheuer 1990). Without a start, tasks are inserted by urgency into
-two plans: empty routes, and routes of one task each, found by assignment. The search starts from
-the better result. The steps are compiled: `rmfs/traffic/src/sequences`.
+A step takes a few tasks out of the routes. Then these tasks, and those postponed so far, are
+inserted in random order, each where it adds the least cost (a few positions are skipped at random).
+Other steps choose new places for some pods. Slightly worse routes are accepted at first (threshold
+accepting, Dueck and Scheuer 1990). Without a start, there are two initial plans: one has no tasks,
+and the other has at most one task per robot, found by assignment. The remaining tasks are inserted
+into both by urgency, and the search starts from the better result. The search is written in Rust:
+`rmfs/traffic/src/sequences`.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def solve(
     seed: int = 0,
     start: Routes | None = None,
 ) -> Solution[Routes]:
-    """Insert the remaining tasks into the start, or into two simple plans, and search from there.
+    """Insert the remaining tasks into the start or two simple plans; then search for a better plan.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ def solve(
     seed
         Seed of the search. Default 0.
     start
-        Feasible routes. Default: none.
+        Feasible routes. Default: two simple plans (see the module).
 
     Returns
     -------

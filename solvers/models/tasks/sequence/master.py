@@ -6,8 +6,10 @@ r"""The restricted master program: which of the known routes are driven.
     \sum_{p \in r} x_p = 1, \quad \sum_{p \ni t} x_p + s_t = 1, \quad
     \sum_p n_{pl} x_p \le 1
 
-where :math:`x_p` is 1 if route p is driven, :math:`s_t` is 1 if task t is left, and :math:`n_{pl}`
-is the number of times that route p uses place l. Costs are in ticks (milliseconds).
+where :math:`x_p` is 1 if route p, which costs :math:`c_p`, is driven, :math:`s_t` is 1 if task t is
+postponed, and :math:`n_{pl}` is the number of times that route p uses place l; :math:`p \in r` are
+the routes of robot r, and :math:`p \ni t` the routes in which task t is done. Costs are in ticks
+(milliseconds).
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ _MISSING = 100_000 * TICKS_PER_S
 
 
 class Relaxed(NamedTuple):
-    """A solution of the relaxation.
+    """A solution of the linear relaxation.
 
     Attributes
     ----------
@@ -51,12 +53,12 @@ class Relaxed(NamedTuple):
 
 
 class Chosen(NamedTuple):
-    """A choice of whole routes.
+    """An integral choice among the known routes.
 
     Attributes
     ----------
     routes
-        One per robot; None if none were found.
+        One per robot; None if no feasible choice was found.
     bound
         Lower bound on the cost of every choice among the known routes, in ticks.
     iterations
@@ -69,7 +71,7 @@ class Chosen(NamedTuple):
 
 
 class Master:
-    """The program; routes are added to it.
+    """The master program; routes are added to it.
 
     Parameters
     ----------
@@ -128,7 +130,7 @@ class Master:
                 self._solver.changeColBounds(self._first + which, 0.0, 0.0)
 
     def relaxed(self) -> Relaxed:
-        """Solve the relaxation over the known routes."""
+        """Solve the linear relaxation over the known routes."""
         ticks, solver = self._ticks, self._solver
         solver.run()
         solution = solver.getSolution()
@@ -142,7 +144,7 @@ class Master:
         )
 
     def whole(self, start: list[Route], limits: Limits, seed: int) -> Chosen:
-        """Choose feasible routes among the known ones by HiGHS.
+        """Solve the integer program over the known routes with HiGHS.
 
         Parameters
         ----------

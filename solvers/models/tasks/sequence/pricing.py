@@ -5,16 +5,18 @@ costs
 
 .. math:: driving + lateness - \sum_{t \in route} v_t + \sum_{l \in route} w_l
 
+Places may repeat within a route unless they are *remembered*. This is a relaxation: the cheapest
+route found never costs more than the cheapest feasible one.
+
 The search extends routes task by task, the most promising first (A*). The estimate of the remaining
 cost allows tasks to be repeated and rounds times down to steps, so it is never too high. A partial
 route is dropped if another partial route to the same task is no later, costs no more, and has used
 no task (and no remembered place) that the dropped route has not used: every completion of the
 dropped route also completes the other, at no higher cost. Between two tasks, a place is ignored if
-another place is both nearer and cheaper.
+the way via another place, one that is not remembered, is no longer and costs no more.
 
-Places may repeat within a route unless they are *remembered*. This is a relaxation: the cheapest
-route found never costs more than the cheapest feasible one. All numbers are integers, in parts of a
-tick, so nothing is rounded.
+All prices and costs are integers, in parts of a tick (1 tick = 1 ms = 1024 parts), so their sums
+are exact.
 """
 
 from __future__ import annotations
@@ -65,7 +67,7 @@ class Found(NamedTuple):
     bound
         Lower bound on the cost of every route of the robot, in parts of a tick.
     routes
-        Routes that cost less than the given limit, the cheapest first.
+        Routes that cost less than the limit `below` of the search, the cheapest first.
     complete
         Whether the search was exhaustive, not ended by a limit.
     """
@@ -115,7 +117,7 @@ class _Next(NamedTuple):
 
 
 class Pricing:
-    """Search for cheapest routes at given prices.
+    """Search for the cheapest routes at given prices.
 
     Parameters
     ----------
@@ -126,13 +128,13 @@ class Pricing:
     remembered
         Mask of the places that a route may use only once, shape (L,).
     every
-        Whether to find every route below a cost, including those dominated by others at these
-        prices; all places are then remembered. Default: no.
+        Whether to find all routes below a cost: all places are then remembered, and a route is
+        dropped only for another with the same tasks and the same places. Default: no.
 
     Attributes
     ----------
     entries
-        Number of table entries examined so far, as deterministic work.
+        Number of table entries examined so far, a deterministic measure of work.
     """
 
     def __init__(

@@ -1,9 +1,13 @@
 r"""Arrival times of robots, and the cost and feasibility of their routes.
 
+The cost, which is minimised, is
+
 .. math::
 
-    \min \sum driving + w \sum_{t \text{ done}} \max(0, arrive_t - due_t)
-    + \sum_{t \text{ left}} skip_t
+    \sum driving + w \sum_{t \text{ done}} \max(0, arrive_t - due_t)
+    + \sum_{t \text{ postponed}} skip_t
+
+where the first sum is over all drives, t is a task, and w is `late_weight`.
 """
 
 from __future__ import annotations
@@ -17,7 +21,7 @@ from rmfs.solvers.models.tasks.sequence.data import NONE, SLACK_S, Routes, TaskS
 
 
 def approach_s(data: TaskSequence, robot: int, place: int, task: int) -> float:
-    """Return the time of the empty drive to the pod of a task, in s.
+    """Return the duration of the empty drive to the pod of a task, in s.
 
     Parameters
     ----------
@@ -49,7 +53,7 @@ def follow(
     place
         Place where the pod of each task is stored, shape (T,).
     stowed
-        Place where the pod that the robot initially carries is stored, or `NONE` without one.
+        Where the robot stores the pod that it carries initially, or `NONE` if it carries none.
 
     Returns
     -------

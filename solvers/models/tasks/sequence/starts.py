@@ -22,7 +22,7 @@ def without_tasks(data: TaskSequence) -> Routes | None:
 
     Returns
     -------
-    The routes; None if there are not enough places.
+    The routes; None if the pods cannot all be stored at different places.
     """
     return _stored(data, ((),) * data.robots)
 
@@ -40,8 +40,8 @@ def first_tasks(data: TaskSequence) -> Routes | None:
 
     Returns
     -------
-    The routes, which may violate time windows and lack tasks that must be done; None if there are
-    not enough places.
+    The routes, which may violate time windows and lack tasks that must be done; None if the pods
+    cannot all be stored at different places.
     """
     ready_s, way_s, _ = from_robots(data)
     arrive_s = np.maximum(ready_s + data.bring_s, data.earliest_s)

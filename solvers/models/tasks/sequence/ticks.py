@@ -73,7 +73,7 @@ class Ticks:
         return after
 
     def cost(self, route: Route) -> int:
-        """Return driving and weighted lateness of a route that is allowed, in ticks."""
+        """Return the driving and weighted lateness of a route whose trips are allowed, in ticks."""
         time, cost, at = int(self.ready[route.robot]), 0, NONE
         places = iter(route.places)
         if self.carrying[route.robot]:

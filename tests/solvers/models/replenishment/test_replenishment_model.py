@@ -217,7 +217,7 @@ def test_violations_name_what_is_wrong() -> None:
     assert violations(data, both) == [
         "a pod gets more bundles than fit into it",
         "a station gets more bundles than fit into it",
-        "a pair is not allowed, or a bundle is left out that must be stored",
+        "a pair is not allowed, or a bundle that must be stored is left out",
     ]
     away = Stocking(np.array([0, -1]), np.array([-1]))
     assert violations(data, away) == ["a pod gets a bundle, but is brought to no station"]
