@@ -294,7 +294,7 @@ def _legend(layout: Layout, ax: Axes) -> None:
         mark("pod", colours.STORAGE, "s"),
         mark("free storage location", colours.FREE_STORAGE, "s"),
         Line2D([], [], color=colours.QUEUE_ZONE, linestyle="dotted", label="queue zone"),
-        Line2D([], [], color=colours.HALLWAY, linestyle="dashed", label="hallway"),
+        Line2D([], [], color=colours.HALLWAY, linestyle="dashed", label="hall"),
     ]
     if layout.elevators:
         entries.insert(2, mark("elevator", colours.ELEVATOR, "s"))

@@ -40,14 +40,15 @@ HEAD = """\
 
 Times are milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 20 pick
 and 12 replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 200 bundles. Each
-rule is measured in a run of its own, with the default rules for all other problems.
+rule is measured in a run of its own, of five simulated minutes. The other problems have their
+default rules, unless the rule or the row requires others.
 
 A *call* asks a controller once and may result in several decisions or in none. The column *median,
 decision* shows the median of the time per decision: the time of a call divided by the number of its
 decisions. Calls without decisions count only if no call resulted in a decision. The other columns
 are mean, 95 % quantile and maximum of the times of all calls. If a controller consults others,
 their time is not counted for it. Rows such as *only age* are PPS `lexicographic` with that
-criterion first, ties broken at random. In the row *all pooled orders count*, PPS considers all
+criterion alone; ties are broken at random. In the row *all pooled orders count*, PPS considers all
 orders in the pools of POA `queue`, not only those that a pod completes. This page is written by
 `python -m tests.tools.decision_times`.
 

@@ -260,8 +260,8 @@ def known_weaknesses() -> str:
     crates, packages = (
         sum(row["ecosystem"] == kind for row in mended) for kind in ("cargo", "pypi")
     )
-    paragraph = f"""Known vulnerabilities: no advisory applies. PyPI was queried on {days} and
-listed none for the locked versions of {len(clear)} of the {len(rows)} Python packages. PyPI only
+    paragraph = f"""Known vulnerabilities: no known advisory applies. PyPI was queried on {days} and
+listed none for {len(clear)} of the {len(rows)} locked versions of Python packages. PyPI only
 answers for the newest version of a package. The other {len(untold)} locked versions are older, so
 there is no answer for them: {", ".join(untold)}. All locked versions were also compared with stored
 advisories: {crates} on the crates, from a copy of the RustSec database of June 2026, and {packages}
@@ -280,16 +280,17 @@ def page(parts: list[Part]) -> str:
 This page lists all packages that rmfs uses, in the versions of the lock files, with the licence
 that each package states. A test checks that all licences are compatible with rmfs's own, the MIT
 licence. The file `docs/sbom.cdx.json` contains the same list as a bill of materials (CycloneDX
-1.5). `python -m tests.tools.supply` writes this page and that file, and checks stored lists of
-advisories, without a network.
+1.5). `python -m tests.tools.supply` writes this page and that file, and compares the locked
+versions with stored advisories, without a network.
 
-Packages are installed separately, with two exceptions. The compiled core is linked with the Rust
-crates below. The page of the viewer contains three.js and uPlot. The licences of these two are in
-`rmfs/view/static/notices.txt`, which is part of the wheel, and at the top of the page's script, so
-exported pages contain them as well.
+Packages are installed separately, with two exceptions. The compiled core (path planning and other
+fast parts, in Rust) is linked with the Rust crates. The page of the [viewer](viewer.md) contains
+three.js and uPlot. The licences of three.js and uPlot are in `rmfs/view/static/notices.txt`, which
+is part of the wheel, and at the top of the page's script, so exported pages contain them as well.
 
 The last column states what needs a package: the compiled core, the page of the viewer, every
-installation at run time, or only an extra or development.
+installation at run time, or only optional extras and development. A Python package with two
+versions is locked for Python below 3.12 and from 3.12 on.
 
 {known_weaknesses()}
 
