@@ -39,7 +39,9 @@ _LATE_MOTIONS = 4
 
 
 class Disturbance(NamedTuple):
-    """One disturbance, from its start to its end; late motions are not recorded.
+    """One disturbance, from its start to its end.
+
+    Motions that start late, which are another kind of disturbance, are not recorded in this way.
 
     Attributes
     ----------

@@ -57,7 +57,7 @@ class Hands(Protocol):
         ...
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the pick to make next; None means the first pick for an order at the station."""
+        """Return the pick of a task to make next; None: its first one for an order on a slot."""
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:

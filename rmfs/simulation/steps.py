@@ -91,15 +91,15 @@ class Due:
             listener(trigger, subject)
 
     def want(self, problem: Problem) -> None:
-        """Make the step due in which the controller of a problem is called."""
+        """Mark as due the step that calls the controller of a problem."""
         self.bits |= 1 << STEP_OF[problem]
 
     def want_arrivals(self) -> None:
-        """Make the step due in which orders and bundles are created."""
+        """Mark as due the step that creates orders and bundles."""
         self.bits |= 1 << ARRIVALS
 
     def want_answers(self) -> None:
-        """Make the step due in which controllers get the answers of optimisers."""
+        """Mark as due the step that passes answers of optimisers to controllers."""
         self.bits |= 1 << ANSWERS
 
     def place_left(self) -> None:

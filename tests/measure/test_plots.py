@@ -44,7 +44,9 @@ def test_every_waypoint_is_drawn_and_colours_are_logarithmic(axes):
     assert isinstance(used.norm, LogNorm)
     assert used.get_array().tolist() == [1, 10, 100, 1000]
     assert axes.get_xlabel() == "x (m)"
-    assert axes.figure.axes[1].get_ylabel() == "Robots that passed or stopped (visits)"
+    assert axes.figure.axes[1].get_ylabel() == (
+        "Number of times that a robot passed or stopped here (visits)"
+    )
 
 
 def test_other_counts_and_tiers(axes):

@@ -32,7 +32,8 @@ class ConstantRatio(StationActivation[ConstantRatioParameters]):
     Of n stations, m = floor(`active_share` x n) are to be on: p = floor(`pick_share` x m) pick
     stations and m - p replenishment stations. If one of these two numbers is 0, it is raised to 1;
     if a kind has fewer stations than its number, all of them are on. Within a kind, the stations
-    with the lowest activation numbers in the layout are on; ties go to the lowest number.
+    with the lowest activation numbers in the layout are on; ties go to the station with the lowest
+    number.
     """
 
     parameters_model = ConstantRatioParameters

@@ -73,7 +73,7 @@ class Journal:
         self._write({"time_us": time_us, "heard": messages, "silent": sorted(silent)})
 
     def note_failure(self, time_us: int, error: str) -> None:
-        """Mark the tick at this time as failed; nothing has been sent to the robots in it."""
+        """Mark the tick at this time as failed: during it, nothing has been sent to the robots."""
         self._write({"time_us": time_us, "failed": error})
 
     def _write(self, entry: dict[str, Any]) -> None:
