@@ -328,7 +328,7 @@ class Recorder(Observer):
         self.questions.append(call)
 
     def optimiser_answered(self, call: Call) -> None:
-        """Record the solution, if any; how many of its decisions are applied is counted in `call`."""
+        """Record the solution, if any; `call` holds how many of its decisions were applied."""
         if call.solution is not None:
             self.solutions[call.number] = to_text(call.solution)
 
