@@ -246,6 +246,13 @@ def test_what_is_spoilt_is_noticed(file: str, what: str, run: Path, capsys) -> N
     )
 
 
+def test_an_order_with_all_its_units_is_completed(run: Path, capsys) -> None:
+    rewrite(run / "events.parquet", without(of("order-completed", 3)))
+    assert main(["check", str(run)]) == 1
+    (line,) = [one for one in capsys.readouterr().out.splitlines() if "got its last unit" in one]
+    assert line.endswith("is not completed")
+
+
 @pytest.mark.parametrize("name", ["units_picked", "orders_completed", "bundles_stored"])
 def test_figures_that_did_not_happen(name: str, run: Path, capsys) -> None:
     frame = pd.read_parquet(run / "footprint.parquet")

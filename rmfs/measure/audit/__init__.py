@@ -14,6 +14,7 @@ from rmfs.measure.audit.report import Chapter as Chapter
 from rmfs.measure.audit.rows import Rows
 
 if TYPE_CHECKING:
+    from rmfs.layout.model import Layout
     from rmfs.measure.folder import RunFolder
 
 
@@ -31,10 +32,22 @@ def audit(run: RunFolder) -> Audit:
     chapters = [
         stock.check(layout, rows, skus, run.table("pods")),
         visits.check(layout, rows, motion, end_us),
-        orders.check(rows),
+        orders.check(rows, _finished_us(run, layout, end_us)),
         slots.check(layout, rows),
         bundles.check(layout, rows, skus),
         bundles.check_bound(rows),
         totals.check(rows, run.footprint, run.table("orders"), run.table("stations")),
     ]
     return Audit(run.check(), chapters)
+
+
+def _finished_us(run: RunFolder, layout: Layout, end_us: int) -> int:
+    """Return the time by whose picks stations have finished before the end, in us; -1 if unknown.
+
+    It is unknown if pickers have times of their own, or orders wait for packing.
+    """
+    varies = run.footprint[["picker_busy_share", "station_blocked_share"]].notna()
+    if varies.any() or not layout.pick_stations:
+        return -1
+    longest_s = max(station.unit_transfer_s for station in layout.pick_stations)
+    return end_us - round(longest_s * 1e6)

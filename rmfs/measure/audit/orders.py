@@ -9,6 +9,8 @@ from rmfs.measure.audit.report import Chapter
 from rmfs.measure.events import Happening
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rmfs.measure.audit.rows import Rows
 
 KINDS = (
@@ -27,6 +29,7 @@ class _Orders:
         self.wanted: dict[int, Counter[int]] = {}
         self.picked: dict[int, Counter[int]] = {}
         self.ended: dict[int, int] = {}
+        self.last_us: dict[int, int] = {}
         self.completed = 0
 
     def follow(self) -> None:
@@ -55,6 +58,7 @@ class _Orders:
                 self._end(row, order, time_us)
             elif kind == Happening.UNIT_PICKED:
                 self.picked[order][sku] += units
+                self.last_us[order] = time_us
                 if self.picked[order][sku] > wants[sku]:
                     self._wrong(row, f"order {order} needs no more units of SKU {sku}")
             elif kind == Happening.ORDER_COMPLETED:
@@ -85,17 +89,37 @@ class _Orders:
         self.faults.append(self.rows.tell(row, what))
 
 
-def check(rows: Rows) -> Chapter:
-    """Check that no order gets too many units, and none before its arrival or after its end.
+def check(rows: Rows, finished_us: int = -1) -> Chapter:
+    """Check that no order gets too many units, or any before its arrival or after its end.
 
-    Also checks that a completed order has got all its units.
+    Also checks that a completed order has got all its units, and that an order with all its units
+    is completed.
+
+    Parameters
+    ----------
+    rows
+        All events of the run.
+    finished_us
+        Pick stations have finished what was picked by this time, in microseconds; -1 if unknown.
     """
     orders = _Orders(rows.of_kind(*KINDS))
     orders.follow()
-    open_ = [
-        f"order {order} has no lines left, but is not completed or cancelled"
-        for order, wants in orders.wanted.items()
-        if order not in orders.ended and wants.total() == 0
-    ]
-    told = f"{len(orders.wanted)} arrived, {orders.completed} completed"
-    return Chapter("orders", told, orders.faults + open_)
+    return Chapter(
+        "orders",
+        f"{len(orders.wanted)} arrived, {orders.completed} completed",
+        [*orders.faults, *_still_open(orders, finished_us)],
+    )
+
+
+def _still_open(orders: _Orders, finished_us: int) -> Iterator[str]:
+    """Yield the orders that should have been completed or cancelled."""
+    for order, wants in orders.wanted.items():
+        if order in orders.ended:
+            continue
+        if wants.total() == 0:
+            yield f"order {order} has no lines left, but is not completed or cancelled"
+        elif wants == orders.picked[order] and orders.last_us[order] < finished_us:
+            yield (
+                f"order {order} got its last unit at {orders.last_us[order] / 1e6:.6f} s, but is "
+                "not completed"
+            )
