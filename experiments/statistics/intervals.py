@@ -108,7 +108,8 @@ def per_arm(
     Returns
     -------
     One row per arm, in the order of their first appearance: `count`, `mean`, `low`, `high`,
-    `half_width`, `relative_half_width` (half width / |mean|) and `sd` (standard deviation).
+    `half_width`, `relative_half_width` (half width divided by the absolute value of the mean) and
+    `sd` (standard deviation).
     """
     require(frame, by, column)
     rows = {}
