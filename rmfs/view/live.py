@@ -13,6 +13,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rmfs.control.choices import check_together, choose
+from rmfs.control.congestion import names_a_file
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.events import EventLog
@@ -269,10 +270,13 @@ class LiveRun:
         ------
         InputError
             If the controller of this problem cannot be exchanged, there is no controller of this
-            name, it does not fit the run or the other controllers, or the run has ended.
+            name, it names a file, it does not fit the run or the other controllers, or the run has
+            ended.
         """
         if problem not in set(Problem) - FIXED:
             raise InputError(f"{problem}: cannot be exchanged during a run")
+        if names_a_file(problem, table):
+            raise InputError("exchange: files can be chosen on the command line only")
         with installed_only():  # a page may name no code
             chosen = choose(Problem(problem), table, "exchange")
         with self._meeting:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmfs import control, layout, scenario
+from rmfs.control.congestion import names_a_file
 from rmfs.errors import InputError
 from rmfs.references import installed_only
 from rmfs.scenario.toml import toml_value
@@ -97,6 +98,8 @@ def _arguments(wish: Table, results: Path) -> list[str]:
     usual = scenario.named_files(scenario.load(given["scenario"]))
     if set(scenario.named_files(work).values()) - set(usual.values()):
         raise InputError("scenario: files can be chosen on the command line only")
+    if any(names_a_file(path[-1], new) for path, new in own["controllers"]):
+        raise InputError("controllers: files can be chosen on the command line only")
     name = str(wish.get("out") or f"{'-'.join(given.values())}-live")
     if not name.replace("-", "").replace("_", "").replace(".", "").isalnum() or name[0] == ".":
         raise InputError(f"out: must be a name of letters, digits, - and _ (given: {name!r})")

@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -174,6 +175,8 @@ def test_a_rule_exchanged_by_hand_is_told(tmp_path: Any) -> None:
         watched.live.exchange("pp", {"name": "far"})
     with pytest.raises(InputError, match="dummy"):
         watched.live.exchange("psa", {"name": "dummy"})
+    with pytest.raises(InputError, match="files can be chosen on the command line only"):
+        watched.live.exchange("psa", {"name": "nearest", "congestion_from": "heat.csv"})
     watched.live.exchange("psa", {"name": "random"})
     told = watched.until(lambda told: told["controllers"]["psa"]["name"] == "random")
     assert told["paused"]
@@ -390,6 +393,23 @@ def test_pages_import_no_code_by_starting_a_run(change: Any, tmp_path: Any) -> N
     with pytest.raises(InputError, match="must be the name of an installed class"):
         Starter(tmp_path / "results").start({"set": change})
     assert not [name for name in sys.modules if "imported_by_page" in name]
+
+
+@pytest.mark.parametrize(
+    ("key", "change", "part"),
+    [
+        ("scenario.demand", {"mode": "stream", "file": "FILE"}, "scenario"),
+        ("controllers.psa", {"name": "nearest", "congestion_from": "FILE"}, "controllers"),
+        ("controllers.psa.congestion_from", "FILE", "controllers"),
+    ],
+)
+def test_pages_read_no_files(key: str, change: Any, part: str, tmp_path: Path) -> None:
+    file = tmp_path / "heat.csv"
+    file.write_text("order,sku,units,time_s\n0,0,1,0.0\n")
+    given = json.loads(json.dumps(change).replace("FILE", str(file)))
+    with pytest.raises(InputError, match=f"{part}: files can be chosen on the command line only"):
+        Starter(tmp_path / "results").start({"set": {key: given}})
+    assert not (tmp_path / "results").exists()
 
 
 @pytest.mark.usefixtures("module_to_import")
