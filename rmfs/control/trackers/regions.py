@@ -11,6 +11,8 @@ if TYPE_CHECKING:
 
     from rmfs.layout.model import Layout
 
+    Index = NDArray[np.integer] | np.integer
+
 REGION_M = 6.0
 """Side of a region, in m."""
 
@@ -74,41 +76,28 @@ class Density:
         sequences. Waypoints on another tier are treated as if they were on the tier of the first.
         """
         regions = self._regions
+        tier, row, column = (of[waypoint] for of in (regions.tier, regions.row, regions.column))
         rows, columns = regions.row[others], regions.column[others]
-        row, column = regions.row[waypoint], regions.column[waypoint]
-        x_first = np.abs(self._to_x(waypoint, row, others) - self._to_x(waypoint, row, waypoint))
-        x_first += np.abs(
-            self._to_y(waypoint, columns, others) - self._to_y(waypoint, columns, waypoint)
-        )
-        y_first = np.abs(
-            self._to_y(waypoint, column, others) - self._to_y(waypoint, column, waypoint)
-        )
-        y_first += np.abs(self._to_x(waypoint, rows, others) - self._to_x(waypoint, rows, waypoint))
+        x_first = np.abs(self._to_x(tier, row, others) - self._to_x(tier, row, waypoint))
+        x_first += np.abs(self._to_y(tier, columns, others) - self._to_y(tier, columns, waypoint))
+        y_first = np.abs(self._to_y(tier, column, others) - self._to_y(tier, column, waypoint))
+        y_first += np.abs(self._to_x(tier, rows, others) - self._to_x(tier, rows, waypoint))
         total: NDArray[np.float64] = 0.5 * (x_first + y_first)
         return total
 
-    def _to_x(
-        self,
-        waypoint: int,
-        row: NDArray[np.intp] | np.intp,
-        at: NDArray[np.integer] | int,
-    ) -> NDArray[np.float64]:
+    def _to_x(self, tier: np.intp, row: Index, at: Index | int) -> NDArray[np.float64]:
         """Return the sum in a row from its beginning to the x of waypoints."""
-        regions, tier = self._regions, self._regions.tier[waypoint]
-        column = regions.column[at]
-        part = (regions.x[at] - column) * self._crossed[tier, row, column]
-        whole: NDArray[np.float64] = self._by_x[tier, row, column] + part
-        return whole
+        column = self._regions.column[at]
+        return self._upto(self._by_x, (tier, row, column), self._regions.x[at] - column)
 
-    def _to_y(
-        self,
-        waypoint: int,
-        column: NDArray[np.intp] | np.intp,
-        at: NDArray[np.integer] | int,
-    ) -> NDArray[np.float64]:
+    def _to_y(self, tier: np.intp, column: Index, at: Index | int) -> NDArray[np.float64]:
         """Return the sum in a column from its beginning to the y of waypoints."""
-        regions, tier = self._regions, self._regions.tier[waypoint]
-        row = regions.row[at]
-        part = (regions.y[at] - row) * self._crossed[tier, row, column]
-        whole: NDArray[np.float64] = self._by_y[tier, row, column] + part
-        return whole
+        row = self._regions.row[at]
+        return self._upto(self._by_y, (tier, row, column), self._regions.y[at] - row)
+
+    def _upto(
+        self, before: NDArray[np.float64], region: tuple[Index, ...], part: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Return the sum over the regions before one, and over a part of that one."""
+        upto: NDArray[np.float64] = before[region] + part * self._crossed[region]
+        return upto

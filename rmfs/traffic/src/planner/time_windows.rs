@@ -219,14 +219,9 @@ mod tests {
         }
     }
 
-    #[test]
-    fn what_need_not_be_may_not_take_long() {
-        let network = row();
-        let mut table = Table::new(network.resources);
-        table.insert(3, Interval { start: 0, end: 30_000_000, robot: 1 }, -1);
-        let kinds = [KIND];
-        let costs = Cache::new(&network, &kinds, 1_000_000);
-        let query = Query {
+    /// From end to end of the row, with few labels.
+    fn query(costs: &Cache) -> Query<'_> {
+        Query {
             start: 0,
             heading: 0,
             ready: 0,
@@ -240,7 +235,17 @@ mod tests {
             detour: FOREVER,
             guide: Guide::Exact,
             times: None,
-        };
+        }
+    }
+
+    #[test]
+    fn what_need_not_be_may_not_take_long() {
+        let network = row();
+        let mut table = Table::new(network.resources);
+        table.insert(3, Interval { start: 0, end: 30_000_000, robot: 1 }, -1);
+        let kinds = [KIND];
+        let costs = Cache::new(&network, &kinds, 1_000_000);
+        let query = query(&costs);
         let swift = Swift::FOR_BIG_FLEETS;
         let mut pathfinder = Pathfinder::new(&network);
         let mut tried =
@@ -257,21 +262,7 @@ mod tests {
             table.insert(5, Interval { start: 0, end: free_s * 1_000_000, robot: 1 }, -1);
             let kinds = [KIND];
             let costs = Cache::new(&network, &kinds, 1_000_000);
-            let query = Query {
-                start: 0,
-                heading: 0,
-                ready: 0,
-                goal: 5,
-                loaded: false,
-                stored: &[],
-                kind: &KIND,
-                model: &costs.models[0],
-                budget: 300,
-                end: End::ForGood,
-                detour: FOREVER,
-                guide: Guide::Exact,
-                times: None,
-            };
+            let query = query(&costs);
             let mut finder = Pathfinder::new(&network);
             let swift = Swift::FOR_BIG_FLEETS;
             let tried = swift.search(&mut finder, &network, &table, &query, FOREVER, Urgency::Try);
