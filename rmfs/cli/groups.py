@@ -27,6 +27,10 @@ SUB_COMMANDS = {
 COMMANDS = {
     "demonstrate": ("rmfs.demonstrator.commands", "Run a warehouse with physical robots."),
     "learn": ("rmfs.learning.commands", "Train linear rules on simulated runs."),
+    "learn-network": (
+        "rmfs.learning.network_commands",
+        "Train rules with small neural networks on simulated runs, by PPO.",
+    ),
     "emulate": (
         "rmfs.demonstrator.commands",
         "Emulate a room: its floor, and robots with imperfections such as wheel slip.",

@@ -42,6 +42,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "frequency-age": "rmfs.control.poa.order_rules:FrequencyAge",
         "random": "rmfs.control.poa.order_rules:RandomOrder",
         "linear": "rmfs.control.poa.linear:Linear",
+        "network": "rmfs.control.poa.network:NetworkRule",
         "rollout": "rmfs.control.poa.rollout:Rollout",
         "dummy": "rmfs.control.dummies:DummyPOA",
     },
@@ -64,6 +65,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "lexicographic": "rmfs.control.pps.lexicographic:Lexicographic",
         "random": "rmfs.control.pps.random:RandomPod",
         "linear": "rmfs.control.pps.linear:Linear",
+        "network": "rmfs.control.pps.network:NetworkRule",
         "dummy": "rmfs.control.dummies:DummyPPS",
     },
     Problem.PSA: {
@@ -75,6 +77,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "cache": "rmfs.control.psa.cache:Cache",
         "utility": "rmfs.control.psa.utility:Utility",
         "linear": "rmfs.control.psa.linear:Linear",
+        "network": "rmfs.control.psa.network:NetworkRule",
         "dummy": "rmfs.control.dummies:DummyPSA",
     },
     Problem.TA: {
@@ -84,6 +87,7 @@ _BUILT_IN: dict[Problem, dict[str, str]] = {
         "brute-force": "rmfs.control.ta.brute_force:BruteForce",
         "swarm": "rmfs.control.ta.swarm:Swarm",
         "linear": "rmfs.control.ta.linear:Linear",
+        "network": "rmfs.control.ta.network:NetworkRule",
         "rollout": "rmfs.control.ta.rollout:Rollout",
         "dummy": "rmfs.control.dummies:DummyTA",
     },

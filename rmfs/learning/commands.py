@@ -50,8 +50,8 @@ def learn(
         scenario,
         controllers,
         problems.split(","),
-        dict(_weight(one) for one in objective.split(",")),
-        [_number(one) for one in seeds.split(",")],
+        dict(weight("--objective", one) for one in objective.split(",")),
+        [number(one) for one in seeds.split(",")],
         {".".join(path): value for path, value in given},
     )
     found = train(
@@ -65,15 +65,18 @@ def learn(
     )
 
 
-def _weight(text: str) -> tuple[str, float]:
+def weight(option: str, text: str) -> tuple[str, float]:
+    """Return the name and the weight in `NAME=WEIGHT`, a part of an option's value."""
     column, _, weight = text.partition("=")
     try:
         return column.strip(), float(weight or 1.0)
     except ValueError:
-        raise InputError(f"--objective {text}: must be COLUMN=WEIGHT") from None
+        what = "COLUMN" if option == "--objective" else "NAME"
+        raise InputError(f"{option} {text}: must be {what}=WEIGHT") from None
 
 
-def _number(text: str) -> int:
+def number(text: str) -> int:
+    """Return a seed of the option `--seeds`."""
     if not text.strip().isdigit():
         raise InputError(f"--seeds {text}: must be numbers, 0 or greater, separated by commas")
     return int(text)

@@ -7,6 +7,7 @@ is the time over which an amount accumulated.
 
 from __future__ import annotations
 
+from heapq import heappop, heappush
 from typing import TYPE_CHECKING
 
 from rmfs.errors import InputError
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from rmfs.observer import Observed
-    from rmfs.world.orders import Order
+    from rmfs.world.orders import Bundle, Order
 
     Wanted = str | type["Reward"] | Mapping[str, float]
     """How a reward is selected: a name, a class, a reference to a class, or weights by name."""
@@ -85,6 +86,56 @@ class LateOrders(Reward):
         self.amount -= order.completed_s > order.due_s
 
 
+class OverdueOrders(Reward):
+    """-1 for every order that is not completed by its due time, counted as soon as this passes.
+
+    In contrast to `LateOrders`, orders that are never completed count.
+    """
+
+    def __init__(self) -> None:
+        self._open: set[int] = set()
+        self._due: list[tuple[float, int]] = []
+
+    def run_started(self, run: Observed) -> None:
+        """Keep a reference to the world, which knows the time."""
+        self._world = run.world
+
+    def order_created(self, order: Order) -> None:
+        """Note the due time of an order."""
+        self._open.add(order.index)
+        heappush(self._due, (order.due_s, order.index))
+
+    def order_cancelled(self, order: Order) -> None:
+        """Forget an order."""
+        self._open.discard(order.index)
+
+    def order_completed(self, order: Order) -> None:
+        """Count orders that are overdue by now, and forget this one."""
+        self._catch_up()
+        self._open.discard(order.index)
+
+    def take(self) -> float:
+        """Return minus the orders whose due time has passed since the last call."""
+        self._catch_up()
+        return super().take()
+
+    def _catch_up(self) -> None:
+        due, now_s = self._due, self._world.now_s
+        while due and due[0][0] < now_s:
+            _, order = heappop(due)
+            if order in self._open:
+                self._open.discard(order)
+                self.amount -= 1.0
+
+
+class Stored(Reward):
+    """1 for every unit stored in a pod."""
+
+    def bundle_stored(self, bundle: Bundle, robot: int) -> None:
+        """Count the units of a bundle."""
+        self.amount += bundle.units
+
+
 class Turnover(Reward):
     """For every completed order, minus the seconds from its arrival to its completion."""
 
@@ -141,6 +192,8 @@ REWARDS: dict[str, type[Reward]] = {
     "orders": Orders,
     "lateness": Lateness,
     "late-orders": LateOrders,
+    "overdue-orders": OverdueOrders,
+    "units-stored": Stored,
     "turnover": Turnover,
     "distance": Distance,
 }

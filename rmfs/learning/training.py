@@ -94,14 +94,18 @@ class Task:
         found = [list(default_weights(kind).values()) for kind in self._kinds()]
         return np.concatenate([np.array(one) / max(map(abs, one)) for one in found])
 
-    def settings(self, weights: NDArray[np.float64]) -> ControllerSettings:
-        """Return the set of controllers whose linear rules have these weights."""
+    def base(self) -> ControllerSettings:
+        """Return the controllers that decide the problems that are not trained."""
         overrides = [
             (key.split(".")[1:], value)
             for key, value in self.set.items()
             if key.startswith("controllers.")
         ]
-        base = control.load(self.controllers, overrides)
+        return control.load(self.controllers, overrides)
+
+    def settings(self, weights: NDArray[np.float64]) -> ControllerSettings:
+        """Return the set of controllers whose linear rules have these weights."""
+        base = self.base()
         choices, rest = dict(base.choices), weights.tolist()
         for name in self.problems:
             problem = Problem(name)
@@ -116,11 +120,15 @@ class Task:
         return ControllerSettings("linear", told, choices)
 
     def worth(self, weights: NDArray[np.float64], seed: int) -> float:
+        """Simulate one run with linear rules of these weights and return its objective."""
+        return self.value_of(self.settings(weights), seed)
+
+    def value_of(self, settings: ControllerSettings, seed: int) -> float:
         """Simulate one run and return its objective; a value that is not finite counts as 0."""
         given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", IdleRuleWarning)  # some weight vectors are bad
-            run = simulate(self.layout, self.scenario, self.settings(weights), seed=seed, set=given)
+            run = simulate(self.layout, self.scenario, settings, seed=seed, set=given)
         values = [float(run.footprint[name]) * weight for name, weight in self.objective.items()]
         return sum(value if isfinite(value) else 0.0 for value in values)
 

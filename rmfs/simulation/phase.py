@@ -6,10 +6,11 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
+from rmfs.control import errands
 from rmfs.control.asks import Outcome, told_by
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
-from rmfs.simulation import errands, steps
+from rmfs.simulation import steps
 from rmfs.simulation.consult import OutsideConsult, PhaseConsult
 from rmfs.simulation.outside import ASKED_BY_TA, Awaits, Outside
 from rmfs.simulation.rule_state import RuleState

@@ -1,0 +1,55 @@
+"""PSA network: chooses the storage location that a network scores highest."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pydantic
+
+from rmfs.control.base import Parameters
+from rmfs.control.candidates import candidates_for
+from rmfs.control.network import CANDIDATES, Network, Scorer, checked, start
+from rmfs.control.problems import Problem
+from rmfs.control.psa import PodStorageAssignment
+from rmfs.control.questions import Question
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class NetworkParameters(Parameters):
+    """Parameters of PSA network."""
+
+    candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
+    """Maximum number of candidates that are scored: the best by the ranking of the learning
+    environment."""
+    network: Network = pydantic.Field(default_factory=lambda: start("place"))
+    """The network that scores storage locations (see the page on learning)."""
+
+    @pydantic.field_validator("network")
+    @classmethod
+    def _check(cls, network: Network) -> Network:
+        return checked("place", network)
+
+
+class NetworkRule(PodStorageAssignment[NetworkParameters]):
+    """Chooses the empty storage location with the highest score.
+
+    None is chosen if declining has a higher score; the robot then keeps its pod until TA decides
+    again.
+    """
+
+    parameters_model = NetworkParameters
+
+    def __init__(self, parameters: NetworkParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._scorer = Scorer("place", parameters.network, parameters.candidates)
+
+    def place(self, robot: Robot) -> int:
+        """Choose the storage location with the highest score; -1 for none."""
+        found = candidates_for(self.view, Question(Problem.PSA, "place", robot.index))
+        row = self._scorer.best_of(found, self.view)
+        return int(found[row]) if row >= 0 else -1

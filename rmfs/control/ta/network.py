@@ -1,0 +1,92 @@
+"""TA network: gives robots the tasks that a network scores highest."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pydantic
+
+from rmfs.control import errands
+from rmfs.control.base import Parameters
+from rmfs.control.decisions import MovePod, Store, WorkFor
+from rmfs.control.network import CANDIDATES, Network, Scorer, checked, start
+from rmfs.control.ta import TaskAllocation
+from rmfs.control.ta.rest import RestPlaces, RestRule
+from rmfs.control.task_candidates import MOVE, has_tasks, tasks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from rmfs.control.decisions import TaskDecision
+    from rmfs.control.ta import Consult
+    from rmfs.control.view import View
+    from rmfs.world.robots import Robot
+
+
+class NetworkParameters(Parameters):
+    """Parameters of TA network."""
+
+    candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
+    """Maximum number of candidates that are scored: the best by the ranking of the learning
+    environment."""
+    network: Network = pydantic.Field(default_factory=lambda: start("ta"))
+    """The network that scores pairs of a robot and a task (see the page on learning)."""
+    rest: RestRule = "nearest"
+    """Where a robot at rest goes if it must make room: the storage location nearest to the `middle`
+    of its tier, the `nearest` one, or one drawn at `random`; beneath stored pods if possible."""
+
+    @pydantic.field_validator("network")
+    @classmethod
+    def _check(cls, network: Network) -> Network:
+        return checked("ta", network)
+
+
+class NetworkRule(TaskAllocation[NetworkParameters]):
+    """Gives the robot and task with the highest score to each other, then the next.
+
+    A robot that needs a task may work for a station, store its pod, move an idle pod or rest where
+    it is; a robot at rest may work for a station. PPS, PSA and repositioning choose pods and
+    storage locations; if they find none, the pair is left out. The rule stops when declining has a
+    higher score than every pair.
+    """
+
+    parameters_model = NetworkParameters
+
+    def __init__(self, parameters: NetworkParameters, view: View, rng: np.random.Generator) -> None:
+        super().__init__(parameters, view, rng)
+        self._scorer = Scorer("ta", parameters.network, parameters.candidates)
+        self._rest = RestPlaces(view, parameters.rest, self.draw)
+
+    def decide(self, consult: Consult) -> Iterator[TaskDecision]:
+        """Yield tasks until declining is better."""
+        may_move = consult.may_move()
+        refused: list[Any] = []
+        while may_move or has_tasks(self.view):
+            found = tasks(self.view, refused)
+            among = None if may_move else (found.columns["kind"] != MOVE).nonzero()[0]
+            row = self._scorer.best_of(found, self.view, among)
+            if row < 0:
+                return
+            chosen = found[row]
+            task = self._whole(chosen, consult)
+            if task is None:
+                refused.append(chosen)
+            else:
+                yield task
+
+    def rest_place(self, robot: Robot) -> int:
+        """Choose a waypoint by the parameter `rest`; -1 if there is none."""
+        return self._rest.choose(robot)
+
+    def _whole(self, chosen: Any, consult: Consult) -> TaskDecision | None:
+        """Return the whole task; None if no pod, storage location or move is found for it."""
+        match chosen:
+            case WorkFor():
+                return errands.work(chosen, self.view, consult)
+            case Store():
+                return errands.store(chosen, consult)
+            case MovePod():
+                return errands.move_pod(chosen, self.view, consult)
+        task: TaskDecision = chosen
+        return task

@@ -1,0 +1,97 @@
+"""`rmfs learn-network`: trains network rules on simulated runs, by PPO."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from rmfs.cli.options import SetOption
+from rmfs.errors import InputError
+from rmfs.learning.commands import number, weight
+
+app = typer.Typer(context_settings={"help_option_names": ["-h", "--help"]})
+
+
+@app.command()
+def learn_network(
+    out: Annotated[Path, typer.Option(help="Controllers file to write (.toml).")],
+    layout: Annotated[str, typer.Option(help="Name of a shipped layout, or a file.")] = "small",
+    scenario: Annotated[str, typer.Option(help="Name of a shipped scenario, or a file.")] = "small",
+    controllers: Annotated[
+        str,
+        typer.Option(
+            help="Set of controllers, used for all problems that are not trained; training goes on "
+            "from its network rules."
+        ),
+    ] = "default",
+    problems: Annotated[
+        str, typer.Option(help="Problems to train: any of poa, pps, psa, ta, separated by commas.")
+    ] = "poa,pps,psa,ta",
+    reward: Annotated[
+        str, typer.Option(help="Reward that PPO maximises, as rewards: NAME=WEIGHT,...")
+    ] = "units=1",
+    steps: Annotated[int, typer.Option(min=1, help="Number of decisions in training.")] = 200_000,
+    objective: Annotated[
+        str,
+        typer.Option(
+            help="Objective by which the best rules are kept, as footprint columns: "
+            "COLUMN=WEIGHT,..."
+        ),
+    ] = "units_picked=1",
+    seeds: Annotated[
+        str, typer.Option(help="Seeds of the runs for the objective, separated by commas.")
+    ] = "1,2,3",
+    checks: Annotated[
+        int, typer.Option(min=1, help="Number of times that the objective is calculated.")
+    ] = 10,
+    hidden: Annotated[int, typer.Option(min=1, help="Units in the hidden layer.")] = 16,
+    candidates: Annotated[
+        int, typer.Option(min=1, help="Maximum number of candidates that are scored.")
+    ] = 16,
+    gamma: Annotated[float, typer.Option(help="Discount factor per decision.")] = 0.99,
+    learning_rate: Annotated[float, typer.Option(help="Initial learning rate.")] = 1e-3,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the weights and of PPO.")] = 1,
+    set_: SetOption = None,
+) -> None:
+    """Train network rules by PPO and write a controllers file for `rmfs run`."""
+    from rmfs.config import parse_override
+    from rmfs.control.toml import to_toml
+    from rmfs.files import write_text
+    from rmfs.learning.ppo import train_network
+    from rmfs.learning.training import Task, named
+
+    if out.suffix != ".toml":
+        raise InputError(f"--out {out}: must be a .toml file")
+    given = [parse_override(one) for one in set_ or []]
+    task = Task(
+        layout,
+        scenario,
+        controllers,
+        problems.split(","),
+        dict(weight("--objective", one) for one in objective.split(",")),
+        [number(one) for one in seeds.split(",")],
+        {".".join(path): value for path, value in given},
+    )
+    found = train_network(
+        task,
+        reward=dict(weight("--reward", one) for one in reward.split(",")),
+        steps=steps,
+        hidden=hidden,
+        candidates=candidates,
+        gamma=gamma,
+        learning_rate=learning_rate,
+        checks=checks,
+        seed=seed,
+        told=print,
+    )
+    told = (
+        f"Trained by rmfs learn-network on {layout}, {scenario}: reward {reward}, {steps} "
+        f"decisions, seed {seed}; objective {objective}, seeds {seeds}."
+    )
+    write_text(out, to_toml(named(found, out.stem, told)))
+    print(
+        f"{out}: mean objective over the seeds {found.value:.6g} (before training: "
+        f"{found.start_value:.6g}); {found.history['cpu_s'].iloc[-1]:.0f} s of processor time"
+    )

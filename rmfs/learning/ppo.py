@@ -1,0 +1,158 @@
+"""Training of network rules by proximal policy optimisation (PPO).
+
+The agent of a `DecisionEnv` decides some problems with networks that score candidates, and
+MaskablePPO of the package sb3-contrib trains these networks. From time to time, they are made into
+network rules, which are simulated; the best rules are returned. Training needs the extra `ppo`;
+simulating the rules does not.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rmfs.control.choices import check_together, choose
+from rmfs.control.network import CANDIDATES, Network, start
+from rmfs.control.problems import Problem
+from rmfs.control.settings import ControllerSettings
+from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from rmfs.learning.rewards import Wanted
+    from rmfs.learning.training import Task, Trained
+
+KINDS: dict[Problem, dict[str, str]] = {
+    Problem.POA: {"network": "poa"},
+    Problem.PPS: {
+        "pick_pod": "pick pod",
+        "replenishment_pod": "replenishment pod",
+        "next_station": "next station",
+    },
+    Problem.PSA: {"network": "place"},
+    Problem.TA: {"network": "ta"},
+}
+"""For each problem that a `Task` may train, the parameters of its network rule that are trained,
+each with the kind of question to which its network applies."""
+
+FIRST_SEED = 1_000_000
+"""Seed of the first training run; each further run has the next seed."""
+
+
+def train_network(
+    task: Task,
+    *,
+    reward: Wanted = "units",
+    steps: int = 200_000,
+    hidden: int = 16,
+    candidates: int = CANDIDATES,
+    gamma: float = 0.99,
+    learning_rate: float = 1e-3,
+    checks: int = 10,
+    seed: int = 1,
+    told: Callable[[str], None] | None = None,
+) -> Trained:
+    """Train network rules for the problems of a task, and return the best rules found.
+
+    Training starts from the network rules among the task's controllers; a problem with another rule
+    starts from `rmfs.control.network.start`. Training runs have the seeds from `FIRST_SEED` on. The
+    rules are simulated with the task's seeds before training, and `checks` times during it; those
+    with the best mean objective are returned. The result depends on the versions of PyTorch and
+    sb3-contrib.
+
+    Parameters
+    ----------
+    reward
+        The reward that PPO maximises (`rmfs.learning.rewards`); it is divided by the standard
+        deviation of the discounted sum of rewards.
+    steps
+        Number of decisions; rounded up to a multiple of 2048.
+    hidden
+        Number of units in the hidden layer of each network.
+    candidates
+        Maximum number of candidates that are scored.
+    gamma
+        Discount factor per decision.
+    learning_rate
+        Initial learning rate; it falls linearly to 0.
+    checks
+        Number of times that the rules are simulated during training.
+    seed
+        Seed of the initial weights and of PPO.
+    told
+        Function called with a line of text after each check.
+
+    Raises
+    ------
+    InputError
+        If a number is out of range, or a package of the extra `ppo` is not installed.
+    """
+    numbers = (steps, hidden, candidates, checks)
+    if min(numbers) < 1 or not 0 < gamma <= 1 or not learning_rate > 0:
+        raise InputError(
+            "training needs steps, hidden, candidates and checks of 1 or more, a gamma above 0 and "
+            "at most 1, and a learning_rate above 0 (given: "
+            f"{', '.join(map(str, (*numbers, gamma, learning_rate)))})"
+        )
+    try:
+        from rmfs.learning.ppo_run import learned
+    except ModuleNotFoundError as error:
+        if str(error.name).partition(".")[0] == "rmfs":
+            raise
+        raise InputError(
+            f"training of networks needs the package {error.name}: pip install rmfs[learning,ppo]"
+        ) from error
+    return learned(
+        task,
+        reward=reward,
+        steps=steps,
+        hidden=hidden,
+        candidates=candidates,
+        gamma=gamma,
+        learning_rate=learning_rate,
+        checks=checks,
+        seed=seed,
+        told=told,
+    )
+
+
+def network_rules(
+    task: Task, networks: Mapping[str, Network], candidates: int = CANDIDATES
+) -> ControllerSettings:
+    """Return the task's controllers, with network rules for the problems that are trained.
+
+    Parameters
+    ----------
+    networks
+        The networks by kind of question.
+    """
+    base = task.base()
+    choices = dict(base.choices)
+    for name in task.problems:
+        problem = Problem(name)
+        table: dict[str, Any] = {"name": "network", "candidates": candidates}
+        for parameter, kind in KINDS[problem].items():
+            table[parameter] = networks[kind].model_dump(mode="json", exclude_none=True)
+        choices[problem] = choose(problem, table, "training")
+    check_together(choices, "training")
+    told = f"Network rules for {', '.join(task.problems)}, the rest as {base.name}."
+    return ControllerSettings("network", told, choices)
+
+
+def first_networks(task: Task) -> dict[str, Network]:
+    """Return the networks from which training starts, by kind of question."""
+    choices = task.base().choices
+    found = {}
+    for name in task.problems:
+        parameters = choices[Problem(name)].parameters
+        for parameter, kind in KINDS[Problem(name)].items():
+            given = getattr(parameters, parameter, None)
+            found[kind] = given if isinstance(given, Network) else start(kind)
+    return found
+
+
+def mean_value(task: Task, settings: ControllerSettings) -> float:
+    """Return the mean objective over the seeds of a task."""
+    return float(np.mean([task.value_of(settings, seed) for seed in task.seeds]))

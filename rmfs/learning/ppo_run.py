@@ -1,0 +1,163 @@
+"""Training by MaskablePPO, as `rmfs.learning.ppo` describes; needs the extra `ppo`."""
+
+from __future__ import annotations
+
+from time import perf_counter, process_time
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+import torch
+from sb3_contrib import MaskablePPO
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
+
+from rmfs.learning.environment import DecisionEnv
+from rmfs.learning.ppo import FIRST_SEED, first_networks, mean_value, network_rules
+from rmfs.learning.scoring import ScoringPolicy
+from rmfs.learning.training import Trained
+from rmfs.random import Stream, generator
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rmfs.control.settings import ControllerSettings
+    from rmfs.learning.rewards import Wanted
+    from rmfs.learning.training import Task
+
+ENVIRONMENTS = 8
+"""Number of runs that are simulated in turn, in one process."""
+ROLLOUT = 2048
+"""Number of decisions between two updates of the networks."""
+
+
+def learned(
+    task: Task,
+    *,
+    reward: Wanted,
+    steps: int,
+    hidden: int,
+    candidates: int,
+    gamma: float,
+    learning_rate: float,
+    checks: int,
+    seed: int,
+    told: Callable[[str], None] | None,
+) -> Trained:
+    """Train as described at `rmfs.learning.ppo.train_network`."""
+    torch.set_num_threads(1)
+    first = first_networks(task)
+    settings = network_rules(task, first, candidates)
+    given = {key: value for key, value in task.set.items() if not key.startswith("controllers.")}
+
+    def made(number: int) -> Training:
+        return Training(
+            task.layout,
+            task.scenario,
+            settings,
+            problems=task.problems,
+            set=given,
+            candidates=candidates,
+            reward=reward,
+            observation="flat",
+            footprint=False,
+            number=number,
+        )
+
+    several = DummyVecEnv([lambda number=number: made(number) for number in range(ENVIRONMENTS)])
+    env = VecNormalize(several, norm_obs=False, norm_reward=True, gamma=gamma)
+    rollouts = -(-steps // ROLLOUT)
+    watched = Checks(task, settings, candidates, rollouts, checks, told)
+    drawn = int(generator(seed, Stream.TRAINING).integers(1, 2**31))
+    model = MaskablePPO(
+        ScoringPolicy,
+        env,
+        n_steps=ROLLOUT // ENVIRONMENTS,
+        batch_size=512,
+        n_epochs=5,
+        gamma=gamma,
+        learning_rate=lambda left: learning_rate * left,
+        ent_coef=0.001,
+        seed=drawn,
+        device="cpu",
+        policy_kwargs={
+            "observing": several.get_attr("observing")[0],
+            "first": first,
+            "hidden": hidden,
+        },
+    )
+    model.learn(total_timesteps=rollouts * ROLLOUT, callback=watched)
+    history = pd.DataFrame(watched.rows, columns=["steps", "value", "wall_s", "cpu_s"])
+    return Trained(watched.best, watched.value, watched.start_value, history)
+
+
+class Training(DecisionEnv):
+    """An environment whose episodes have the training seeds, which are dealt to all environments.
+
+    Parameters
+    ----------
+    number
+        Number of the environment, from 0.
+    """
+
+    def __init__(self, *arguments: Any, number: int, **named: Any) -> None:
+        super().__init__(*arguments, **named)
+        self._next_seed = FIRST_SEED + number
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Start the run with the next training seed; a given seed is ignored."""
+        seed, self._next_seed = self._next_seed, self._next_seed + ENVIRONMENTS
+        return super().reset(seed=seed, options=options)
+
+
+class Checks(BaseCallback):
+    """Simulates the rules from time to time, and keeps the best ones.
+
+    Attributes
+    ----------
+    best, value, start_value
+        As in `Trained`.
+    rows
+        For each check, the number of decisions so far, the value of the rules, and the wall and
+        processor times since the start, in s.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        first: ControllerSettings,
+        candidates: int,
+        rollouts: int,
+        checks: int,
+        told: Callable[[str], None] | None,
+    ) -> None:
+        super().__init__()
+        self._began_s, self._cpu_began_s = perf_counter(), process_time()
+        self._task, self._candidates, self._told = task, candidates, told
+        self._due = {round(rollouts * (number + 1) / checks) for number in range(checks)}
+        self._done = 0
+        self.best, self.rows = first, list[tuple[int, float, float, float]]()
+        self.value = self.start_value = mean_value(task, first)
+
+    def _on_step(self) -> bool:
+        return True
+
+    def _on_rollout_start(self) -> None:
+        self._check()
+        self._done += 1
+
+    def _on_training_end(self) -> None:
+        self._check()
+
+    def _check(self) -> None:
+        if self._done not in self._due:
+            return
+        found = network_rules(self._task, self.model.policy.networks(), self._candidates)
+        value = mean_value(self._task, found)
+        spent = perf_counter() - self._began_s, process_time() - self._cpu_began_s
+        self.rows.append((self.num_timesteps, value, *spent))
+        if value > self.value:
+            self.best, self.value = found, value
+        if self._told is not None:
+            self._told(f"{self.num_timesteps} decisions: objective {value:.4g}")
