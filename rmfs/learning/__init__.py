@@ -12,6 +12,7 @@ from rmfs.errors import InputError
 
 if TYPE_CHECKING:
     from rmfs.learning.environment import DecisionEnv as DecisionEnv
+    from rmfs.learning.ppo import train_network as train_network
     from rmfs.learning.rewards import Reward as Reward
     from rmfs.learning.robots import RobotsEnv as RobotsEnv
     from rmfs.learning.training import Task as Task
@@ -27,9 +28,19 @@ _PLACES = {
     "RobotsEnv": "rmfs.learning.robots",
     "Task": "rmfs.learning.training",
     "train": "rmfs.learning.training",
+    "train_network": "rmfs.learning.ppo",
 }
 
-__all__ = ["NAME", "DecisionEnv", "DecisionVectorEnv", "Reward", "RobotsEnv", "Task", "train"]
+__all__ = [
+    "NAME",
+    "DecisionEnv",
+    "DecisionVectorEnv",
+    "Reward",
+    "RobotsEnv",
+    "Task",
+    "train",
+    "train_network",
+]
 
 
 def __getattr__(name: str) -> Any:

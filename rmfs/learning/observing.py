@@ -17,6 +17,7 @@ from rmfs.control.features import (
     features_of,
     unscaled,
 )
+from rmfs.control.overview import GLOBAL_FEATURES, overview
 from rmfs.control.problems import Problem
 from rmfs.control.task_candidates import MOVE, has_tasks
 from rmfs.errors import InputError
@@ -28,20 +29,6 @@ if TYPE_CHECKING:
 
     from rmfs.control.view import View
     from rmfs.simulation.decision import Decision
-
-GLOBAL_FEATURES: tuple[Feature, ...] = (
-    Feature("time_left", "share", 1.0, "remaining share of the run"),
-    Feature("backlog_orders", "orders", 100.0, "orders waiting for a station"),
-    Feature("waiting_bundles", "bundles", 100.0, "bundles without station or pod"),
-    Feature("free_slots", "share", 1.0, "order slots of active pick stations that are free"),
-    Feature("open_units", "units per station", 20.0, "units for which no pod is under way"),
-    Feature("asking_robots", "share", 1.0, "robots that need a task"),
-    Feature("resting_robots", "share", 1.0, "robots at rest"),
-    Feature("loaded_robots", "share", 1.0, "robots with a pod"),
-    Feature("stored_share", "share", 1.0, "space of all pods that is in use"),
-)
-"""Features of the whole warehouse. In observations, a one-hot encoding of the kind of question
-follows."""
 
 _NONE = np.empty(0, np.intp)
 
@@ -134,7 +121,6 @@ class Observing:
         self._only_decline = np.zeros(candidates + 1, np.int8)
         self._only_decline[candidates] = 1
         self._names = [feature.name for feature in self.features]
-        self._scales = [feature.scale for feature in GLOBAL_FEATURES]
         self._places = {kind: _places(kind, self._names) for kind in self.kinds}
         self._rankings = {**RANKINGS, **_checked(rankings or {})}
 
@@ -176,31 +162,14 @@ class Observing:
         return Options(decision, best if rows is None else rows[best], found, mask)
 
     def globals_of(self, view: View, decision: Decision | None) -> NDArray[np.float32]:
-        """Return the global features, shape (G,)."""
-        robots = len(view.robots)
-        slots = taken = units = 0
-        for station in view.pick_stations:
-            units += station.requests.units
-            if station.active:
-                slots += station.slots
-                taken += len(station.orders)
-        inventory, storage = view.inventory, view.storage
-        plain = (
-            1.0 - view.now_s / view.end_s,
-            len(view.orders),
-            len(view.bundles),
-            1.0 - taken / slots if slots else 0.0,
-            units / max(len(view.pick_stations), 1),
-            len(view.asking) / robots,
-            len(view.resting) / robots,
-            (len(storage.place_of) - np.count_nonzero(storage.is_stored)) / robots,
-            inventory.stored_space / inventory.total_capacity,
-        )
+        """Return the features of the warehouse and then of the question, shape (G,).
+
+        Those of the question are a one-hot encoding of its kind, or 0 if there is none.
+        """
         found = np.zeros(len(self.global_features), np.float32)
-        scaled = zip(plain, self._scales, strict=True)
-        found[: len(plain)] = [min(max(one / scale, -LIMIT), LIMIT) for one, scale in scaled]
+        found[: len(GLOBAL_FEATURES)] = overview(view)
         if decision is not None:
-            found[len(plain) + self.kinds.index(kind_of(decision))] = 1.0
+            found[len(GLOBAL_FEATURES) + self.kinds.index(kind_of(decision))] = 1.0
         return found
 
 

@@ -33,9 +33,7 @@ SITES: dict[str, tuple[str, dict[str, Any]]] = {
     "backlog": ("small", {"scenario.duration_s": 400, "layout.robots": 4}),
     "arrivals": ("small-arrivals", LATE),
 }
-TASK = Task(
-    "small", "small", problems=("poa", "psa"), seeds=(1,), set={"scenario.duration_s": 60}
-)
+TASK = Task("small", "small", problems=("poa", "psa"), seeds=(1,), set={"scenario.duration_s": 60})
 
 
 def shaken(kind: str, seed: int) -> Network:
@@ -132,9 +130,7 @@ def test_wrong_numbers_are_refused(given: dict[str, Any]) -> None:
 def test_training_goes_on_from_network_rules() -> None:
     assert first_networks(TASK) == {"poa": start("poa"), "place": start("place")}
     mine = {"linear": {"away_s": -2.0}}
-    task = replace(
-        TASK, set={**TASK.set, "controllers.psa": {"name": "network", "network": mine}}
-    )
+    task = replace(TASK, set={**TASK.set, "controllers.psa": {"name": "network", "network": mine}})
     assert first_networks(task)["place"] == Network(linear={"away_s": -2.0})
 
 
