@@ -8,37 +8,16 @@ simulating the rules does not.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from rmfs.control.choices import check_together, choose
-from rmfs.control.network import CANDIDATES, Network, start
-from rmfs.control.problems import Problem
-from rmfs.control.settings import ControllerSettings
+from rmfs.control.network import CANDIDATES
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from rmfs.learning.rewards import Wanted
     from rmfs.learning.training import Task, Trained
-
-KINDS: dict[Problem, dict[str, str]] = {
-    Problem.POA: {"network": "poa"},
-    Problem.PPS: {
-        "pick_pod": "pick pod",
-        "replenishment_pod": "replenishment pod",
-        "next_station": "next station",
-    },
-    Problem.PSA: {"network": "place"},
-    Problem.TA: {"network": "ta"},
-}
-"""For each problem that a `Task` may train, the parameters of its network rule that are trained,
-each with the kind of question to which its network applies."""
-
-FIRST_SEED = 1_000_000
-"""Seed of the first training run; each further run has the next seed."""
 
 
 def train_network(
@@ -57,7 +36,7 @@ def train_network(
     """Train network rules for the problems of a task, and return the best rules found.
 
     Training starts from the network rules among the task's controllers; a problem with another rule
-    starts from `rmfs.control.network.start`. Training runs have the seeds from `FIRST_SEED` on. The
+    starts from `rmfs.control.network.start`. Training runs have the seeds from `rmfs.learning.ppo_run.FIRST_SEED` on. The
     rules are simulated with the task's seeds before training, and `checks` times during it; those
     with the best mean objective are returned. The result depends on the versions of PyTorch and
     sb3-contrib.
@@ -116,43 +95,3 @@ def train_network(
         seed=seed,
         told=told,
     )
-
-
-def network_rules(
-    task: Task, networks: Mapping[str, Network], candidates: int = CANDIDATES
-) -> ControllerSettings:
-    """Return the task's controllers, with network rules for the problems that are trained.
-
-    Parameters
-    ----------
-    networks
-        The networks by kind of question.
-    """
-    base = task.base()
-    choices = dict(base.choices)
-    for name in task.problems:
-        problem = Problem(name)
-        table: dict[str, Any] = {"name": "network", "candidates": candidates}
-        for parameter, kind in KINDS[problem].items():
-            table[parameter] = networks[kind].model_dump(mode="json", exclude_none=True)
-        choices[problem] = choose(problem, table, "training")
-    check_together(choices, "training")
-    told = f"Network rules for {', '.join(task.problems)}, the rest as {base.name}."
-    return ControllerSettings("network", told, choices)
-
-
-def first_networks(task: Task) -> dict[str, Network]:
-    """Return the networks from which training starts, by kind of question."""
-    choices = task.base().choices
-    found = {}
-    for name in task.problems:
-        parameters = choices[Problem(name)].parameters
-        for parameter, kind in KINDS[Problem(name)].items():
-            given = getattr(parameters, parameter, None)
-            found[kind] = given if isinstance(given, Network) else start(kind)
-    return found
-
-
-def mean_value(task: Task, settings: ControllerSettings) -> float:
-    """Return the mean objective over the seeds of a task."""
-    return float(np.mean([task.value_of(settings, seed) for seed in task.seeds]))

@@ -12,7 +12,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize
 
 from rmfs.learning.environment import DecisionEnv
-from rmfs.learning.ppo import FIRST_SEED, first_networks, mean_value, network_rules
+from rmfs.learning.networks import first_networks, mean_value, network_rules
 from rmfs.learning.scoring import ScoringPolicy
 from rmfs.learning.training import Trained
 from rmfs.random import Stream, generator
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from rmfs.learning.rewards import Wanted
     from rmfs.learning.training import Task
 
+FIRST_SEED = 1_000_000
+"""Seed of the first training run; each further run has the next seed."""
 ENVIRONMENTS = 8
 """Number of runs that are simulated in turn, in one process."""
 ROLLOUT = 2048

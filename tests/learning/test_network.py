@@ -18,7 +18,8 @@ from rmfs.control.overview import GLOBAL_FEATURES
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.learning import DecisionEnv
-from rmfs.learning.ppo import KINDS, first_networks, network_rules, train_network
+from rmfs.learning.networks import KINDS, first_networks, network_rules
+from rmfs.learning.ppo import train_network
 from rmfs.learning.training import Task
 from rmfs.measure.dictionary import reproducible
 
