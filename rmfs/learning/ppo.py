@@ -36,10 +36,10 @@ def train_network(
     """Train network rules for the problems of a task, and return the best rules found.
 
     Training starts from the network rules among the task's controllers; a problem with another rule
-    starts from `rmfs.control.network.start`. Training runs have the seeds from `rmfs.learning.ppo_run.FIRST_SEED` on. The
-    rules are simulated with the task's seeds before training, and `checks` times during it; those
-    with the best mean objective are returned. The result depends on the versions of PyTorch and
-    sb3-contrib.
+    starts from `rmfs.control.network.start`. Training runs have the seeds 1000000, 1000001 and so
+    on. The rules are simulated with the task's seeds before training, and `checks` times during it;
+    those with the best mean objective are returned. The result depends on the versions of PyTorch
+    and sb3-contrib.
 
     Parameters
     ----------
