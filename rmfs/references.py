@@ -121,6 +121,15 @@ def anchored(reference: str, folder: Path | None = None) -> str:
     return f"{path.absolute()}:{name}"
 
 
+def anchored_file(given: str, folder: Path) -> str:
+    """Return the path of a file in a folder; any other text unchanged."""
+    beside = folder / given
+    try:
+        return str(beside.absolute()) if beside.is_file() else given
+    except OSError:  # too long for a file name: reported where the file is read
+        return given
+
+
 def reference_of(found: type) -> str:
     """Return a reference by which another process finds a class.
 

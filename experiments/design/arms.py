@@ -24,7 +24,7 @@ from rmfs.measure.dictionary import footprint_column
 from rmfs.measure.registry import RESERVED
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping
     from pathlib import Path
 
     from rmfs.experiments.design.file import DesignFile
@@ -397,12 +397,26 @@ def anchored(given: str, folder: Path) -> str:
         return given
 
 
+_FOUND: dict[str, Callable[[str, Path], str]] = {
+    "name": references.anchored,
+    "guidance": references.anchored_file,
+}
+"""Keys of a rule's table whose values may name files, and what finds these."""
+
+
 def _anchored_rule(path: list[str], value: Any, folder: Path) -> Any:
-    """Return a rule's name so that the file it may be in is found from everywhere."""
+    """Return a value so that the file it may name is found from everywhere."""
     if path[0] != "controllers":
         return value
-    if isinstance(value, dict) and isinstance(value.get("name"), str):
-        return {**value, "name": references.anchored(value["name"], folder)}
+    if isinstance(value, dict):
+        named = {
+            key: find(value[key], folder)
+            for key, find in _FOUND.items()
+            if isinstance(value.get(key), str)
+        }
+        return {**value, **named}
+    if path[-1] == "guidance" and isinstance(value, str):
+        return references.anchored_file(value, folder)
     is_name = len(path) == 2 or path[-1] == "name"
     return references.anchored(value, folder) if is_name and isinstance(value, str) else value
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from rmfs import layout as layouts
+from rmfs.cli.options import SetOption
 from rmfs.config import parse_override
 from rmfs.errors import InputError
 from rmfs.experiments.traffic import duel as duels
@@ -123,7 +124,7 @@ def duel(
         run = drive(
             loaded,
             trips(),
-            duels.settings(name, seed),
+            duels.settings(name, seed, loaded),
             duration_s=duration,
             warmup_s=warmup,
             proven=check,
@@ -200,6 +201,95 @@ def warehouses_command(
     if unsafe:
         print(f"rmfs: {unsafe} collisions", file=sys.stderr)
         raise typer.Exit(UNSAFE)
+
+
+@app.command("guide")
+def guide_command(
+    layout: LayoutArgument,
+    out: Annotated[Path, typer.Option(help="File of guidance to write (.json).")],
+    scenario: Annotated[
+        str, typer.Option(help="Name of a shipped scenario, or a file.")
+    ] = "default",
+    controllers: Annotated[
+        str, typer.Option(help="Name of a shipped set of controllers, or a file.")
+    ] = "default",
+    objective: Annotated[
+        str, typer.Option(help="Objective to maximise, as footprint columns: COLUMN=WEIGHT,...")
+    ] = "trip_delay_mean_s=-1",
+    seeds: Annotated[
+        str,
+        typer.Option(
+            help="Seeds of the runs, separated by commas; twice as many after the greatest decide "
+            "at the end."
+        ),
+    ] = "1001,1002,1003",
+    weights: Annotated[
+        str | None,
+        typer.Option(
+            help="Weights of features to start from, in s: FEATURE=WEIGHT,...", show_default=False
+        ),
+    ] = None,
+    generations: Annotated[
+        int, typer.Option(min=0, help="Number of generations; 0: use --weights as they are.")
+    ] = 10,
+    population: Annotated[
+        int, typer.Option(min=4, help="Number of vectors of weights per generation.")
+    ] = 8,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 1,
+    jobs: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
+    set_: SetOption = None,
+) -> None:
+    """Optimise guidance, the extra costs of a layout's edges, over simulated runs with orders."""
+    from rmfs.experiments.traffic import guide
+
+    if out.suffix.lower() != ".json":
+        raise InputError(f"--out {out}: must be a .json file")
+    if generations == 0 and weights is None:
+        raise InputError("--generations 0: needs --weights")
+    task = guide.Task(
+        layout,
+        scenario,
+        controllers,
+        _numbers("--objective", objective),
+        [_seed(one) for one in seeds.split(",")],
+        {".".join(path): value for path, value in map(parse_override, set_ or [])},
+    )
+    start = None if weights is None else _numbers("--weights", weights)
+    found = guide.optimise(
+        task,
+        start=start,
+        generations=generations,
+        population=population,
+        seed=seed,
+        jobs=jobs,
+        told=_tell,
+    )
+    settings = {"generations": generations, "population": population, "seed": seed}
+    found.write(out, task, **settings)
+    for name, weight in found.weights.items():
+        typer.echo(f"{name}: {weight:.4g} s")
+    typer.echo(
+        f"{out}: mean objective over other seeds {found.value:.6g} "
+        f"(without guidance: {found.base_value:.6g})"
+    )
+
+
+def _numbers(option: str, text: str) -> dict[str, float]:
+    """Read `NAME=NUMBER,...`."""
+    found = {}
+    for part in text.split(","):
+        name, _, number = part.partition("=")
+        try:
+            found[name.strip()] = float(number)
+        except ValueError:
+            raise InputError(f"{option} {text}: must be NAME=NUMBER,...") from None
+    return found
+
+
+def _seed(text: str) -> int:
+    if not text.strip().isdigit():
+        raise InputError(f"--seeds {text}: must be numbers, 0 or greater, separated by commas")
+    return int(text)
 
 
 def _given(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from rmfs.control.choices import Choice
+    from rmfs.layout.model import Layout
     from rmfs.traffic import PlannerSettings
     from rmfs.trips import TripRun
 
@@ -62,9 +63,9 @@ def chosen(text: str) -> Choice:
     return choose(Problem.PP, table, f"--planner {text}")
 
 
-def settings(text: str, seed: int) -> PlannerSettings:
-    """Return the settings of the planner named by a text."""
-    return planner_settings(chosen(text), seed)
+def settings(text: str, seed: int, layout: Layout) -> PlannerSettings:
+    """Return the settings, on a layout, of the planner named by a text."""
+    return planner_settings(chosen(text), seed, layout)
 
 
 def all_planners() -> list[str]:

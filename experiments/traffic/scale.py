@@ -135,7 +135,7 @@ def measure(size: dict[str, int], planner: str, duration_s: float, seed: int) ->
     only_network = Traffic(small, cost_table_bytes=0)
     network_mb = resident_mb() - before_mb
     del only_network
-    stream, chosen = random_trips(layout, seed), settings(planner, seed)
+    stream, chosen = random_trips(layout, seed), settings(planner, seed, layout)
     marks: list[float] = []
 
     def noted(traffic: Traffic) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import pydantic
 
 from rmfs.control.base import Parameters
-from rmfs.control.trackers.congestion import FORECAST, RECENT, Congestion
+from rmfs.control.trackers.congestion import Congestion
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -49,20 +49,3 @@ class CongestionParameters(Parameters):
         """Request the tracker if it is needed."""
         if self.congestion:
             self.tracker(view)
-
-
-def names_a_file(key: str, given: Any) -> bool:
-    """Return whether a parameter of a controller, or a part of it, makes a run read a file.
-
-    Parameters
-    ----------
-    key
-        Name of the parameter.
-    given
-        Its value; the parts of tables and lists are examined as well.
-    """
-    if isinstance(given, dict):
-        return any(names_a_file(name, part) for name, part in given.items())
-    if isinstance(given, list):
-        return any(names_a_file(key, part) for part in given)
-    return key == "congestion_from" and given not in (RECENT, FORECAST)

@@ -14,7 +14,7 @@ from rmfs.control import registry
 from rmfs.control.base import RuleTables
 from rmfs.control.choices import DEFAULTS, Choice, check_together, choose
 from rmfs.control.problems import Problem
-from rmfs.references import anchored
+from rmfs.references import anchored, anchored_file
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -111,11 +111,13 @@ def load_with_notes(
 
 
 def _anchor(table: Table, folder: Path) -> None:
-    """Resolve rule files relative to the controllers file first."""
+    """Resolve files of rules and of guidance relative to the controllers file first."""
     for problem in Problem:
         rule = table.get(problem)
         if isinstance(rule, dict) and isinstance(rule.get("name"), str):
             rule["name"] = anchored(rule["name"], folder)
+        if isinstance(rule, dict) and isinstance(rule.get("guidance"), str):
+            rule["guidance"] = anchored_file(rule["guidance"], folder)
 
 
 def settings(

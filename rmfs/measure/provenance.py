@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs import foreign, instances
 from rmfs.config import apply_overrides, read_toml, validate
+from rmfs.control.files import named_files as files_of_controllers
 from rmfs.digest import digest
 from rmfs.errors import InputError
 from rmfs.layout.loading import split_factors
@@ -71,6 +72,7 @@ def describe(
     inputs
         Layout, scenario and controllers as specified by the user (names or paths).
     """
+    table = run.controllers.to_table()
     names = [name.partition(MARK)[0] if run.interventions else name for name in run.names]
     given = dict(zip(KINDS, names, strict=True)) if inputs is None else dict(inputs)
     return {
@@ -88,7 +90,8 @@ def describe(
         },
         "controllers": {
             **source("controllers", given["controllers"]),
-            "parameters": run.controllers.to_table(),
+            "files": {key: _hash(path) for key, path in files_of_controllers(table).items()},
+            "parameters": table,
             "sources": _sources(run.controllers.rules()),
         },
         "interventions": [

@@ -202,7 +202,7 @@ events, streams, remark, allow_not_well_formed, traffic_maker
         self.measures = [kind() for kind in (*SHIPPED, *wanted)]
         measuring = [self.recorder, *self.measures] if measured else []
         self.log = measure.EventLog() if events is None and trace else events
-        planner = planner_settings(rules.choices[Problem.PP], seed)
+        planner = planner_settings(rules.choices[Problem.PP], seed, plan)
         slow = work.disturbances.slow
         slower = {} if slow is None else {"slow_shares": (slow.speed_share,)}
         traffic = traffic_maker(plan, record_trace=self.log is not None, planner=planner, **slower)

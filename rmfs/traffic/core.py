@@ -33,7 +33,7 @@ class Options(NamedTuple):
 def build(layout: Layout, options: Options) -> Core:
     """Build the core of a layout in its initial state."""
     planner = options.planner
-    return Core(
+    core = Core(
         layout.x_m,
         layout.y_m,
         layout.tier.astype(np.int16),
@@ -73,6 +73,9 @@ def build(layout: Layout, options: Options) -> Core:
         options.cost_table_bytes,
         options.record_trace,
     )
+    if planner.guidance:
+        core.set_guidance([(a, b, _us(extra_s)) for a, b, extra_s in planner.guidance])
+    return core
 
 
 def fork(core: Core, options: Options, memo: dict[int, Any]) -> tuple[Core, Options]:
@@ -94,6 +97,7 @@ def to_bytes(core: Core, options: Options) -> bytes:
         "record_trace": options.record_trace,
         "cost_table_bytes": options.cost_table_bytes,
         "planner": [planner.name, planner.parameters, planner.seed],
+        "guidance": planner.guidance,
         "slow_shares": list(options.slow_shares),
         "code_bytes": len(code),
     }
@@ -117,12 +121,13 @@ def from_bytes(layout: Layout, saved: bytes) -> tuple[Core, Options]:
     if not known:
         raise ValueError("these are not the bytes of saved traffic")
     name, parameters, seed = head["planner"]
+    guidance = tuple((a, b, extra_s) for a, b, extra_s in head["guidance"])
     size = head["code_bytes"]
     code = pickle.loads(rest[:size]) if size else None
     options = Options(
         head["record_trace"],
         head["cost_table_bytes"],
-        PlannerSettings(name, parameters, seed, code),
+        PlannerSettings(name, parameters, seed, code, guidance),
         tuple(head["slow_shares"]),
     )
     core = build(layout, options)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from rmfs.traffic.guidance import GuidedEdges
     from rmfs.traffic.planner import PathPlanner
 
 COST_TABLE_BYTES = 256_000_000
@@ -26,12 +27,15 @@ class PlannerSettings(NamedTuple):
         Seed of its random decisions.
     code
         The planner itself, if it is written in Python (`rmfs.traffic.planner`).
+    guidance
+        Edges with an extra cost: their waypoints, and the cost in s (`rmfs.traffic.guidance`).
     """
 
     name: str
     parameters: dict[str, float]
     seed: int = 0
     code: PathPlanner | None = None
+    guidance: GuidedEdges = ()
 
 
 TIME_WINDOWS = PlannerSettings(

@@ -13,7 +13,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rmfs.control.choices import check_together, choose
-from rmfs.control.congestion import names_a_file
+from rmfs.control.files import names_a_file
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.events import EventLog

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rmfs import control, layout, scenario
-from rmfs.control.congestion import names_a_file
+from rmfs.control.files import names_a_file
 from rmfs.errors import InputError
 from rmfs.references import installed_only
 from rmfs.scenario.toml import toml_value

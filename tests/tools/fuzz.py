@@ -125,7 +125,7 @@ def _driven(layout: Layout, case: dict[str, Any], *, well_formed: bool) -> Verdi
         stream = random_trips(layout, number)
     except InputError as error:
         return Verdict("refused", str(error)[:160])
-    chosen = settings(name, number)
+    chosen = settings(name, number, layout)
     done = drive(layout, stream, chosen, duration_s=DURATION_S, proven=True, stall_s=STALL_S)
     assert done.report is not None
     if not done.report.ok:

@@ -401,6 +401,8 @@ def test_pages_import_no_code_by_starting_a_run(change: Any, tmp_path: Any) -> N
         ("scenario.demand", {"mode": "stream", "file": "FILE"}, "scenario"),
         ("controllers.psa", {"name": "nearest", "congestion_from": "FILE"}, "controllers"),
         ("controllers.psa.congestion_from", "FILE", "controllers"),
+        ("controllers.pp", {"name": "time-windows", "guidance": "FILE"}, "controllers"),
+        ("controllers.pp.guidance", "FILE", "controllers"),
     ],
 )
 def test_pages_read_no_files(key: str, change: Any, part: str, tmp_path: Path) -> None:

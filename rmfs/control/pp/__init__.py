@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, cast
 
 import numpy as np
@@ -11,12 +12,14 @@ import pydantic
 from rmfs.control.base import Controller, Parameters
 from rmfs.control.problems import Problem
 from rmfs.traffic import PlannerSettings
+from rmfs.traffic.guidance import read_guidance
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
     from rmfs.control.choices import Choice
     from rmfs.control.view import View
+    from rmfs.layout.model import Layout
     from rmfs.traffic.planner import Agent, Question, Way
 
 P = TypeVar("P", bound=Parameters)
@@ -57,7 +60,7 @@ class PathPlanningInPython(PathPlanning[P]):
         """Plan paths for all driving robots; see `rmfs.traffic.planner.PathPlanner`."""
 
 
-def planner_settings(choice: Choice, seed: int) -> PlannerSettings:
+def planner_settings(choice: Choice, seed: int, layout: Layout | None = None) -> PlannerSettings:
     """Convert a choice of controller into settings of the traffic core.
 
     Parameters
@@ -66,6 +69,13 @@ def planner_settings(choice: Choice, seed: int) -> PlannerSettings:
         Controller chosen for PP, and its parameters.
     seed
         Seed of the planner's random decisions, such as where a robot moves to resolve a deadlock.
+    layout
+        The layout; needed only if the parameter `guidance` names a file.
+
+    Raises
+    ------
+    InputError
+        If the file of guidance is invalid or belongs to another layout.
     """
     controller = choice.controller
     assert issubclass(controller, PathPlanning)
@@ -74,5 +84,11 @@ def planner_settings(choice: Choice, seed: int) -> PlannerSettings:
         rhythm = {key: float(getattr(parameters, key)) for key in ("period_s", "runs_granted")}
         code = controller(parameters, cast("View", None), np.random.default_rng(seed))
         return PlannerSettings(controller.planner, rhythm, seed, code)
-    numbers = {key: float(value) for key, value in choice.parameters.model_dump().items()}
-    return PlannerSettings(controller.planner, numbers, seed)
+    given = choice.parameters.model_dump()
+    file = given.pop("guidance", None)
+    numbers = {key: float(value) for key, value in given.items()}
+    settings = PlannerSettings(controller.planner, numbers, seed)
+    if file is None:
+        return settings
+    assert layout is not None, "guidance belongs to a layout"
+    return settings._replace(guidance=read_guidance(Path(file), layout))

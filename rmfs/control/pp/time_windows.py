@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import pydantic
 
 from rmfs.control.base import Parameters
@@ -22,6 +24,9 @@ class TimeWindowsParameters(Parameters):
     swift_from: int = pydantic.Field(300, ge=0)
     """Mean number of labels per plan above which the run changes to faster searches even if `swift`
     is false; 0: never."""
+    guidance: Annotated[str, pydantic.Field(min_length=1)] | None = None
+    """File with extra costs of edges, written by `rmfs traffic guide`: plans minimise arrival time
+    plus extra cost. By default, there is none."""
 
 
 class TimeWindows(PathPlanning[TimeWindowsParameters]):

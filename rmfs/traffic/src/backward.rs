@@ -1,7 +1,11 @@
-//! Unhindered times to one goal, searched backwards and only as far as needed.
+//! Unhindered times to one goal, searched backwards and only as far as needed; with guidance, times
+//! plus the extra cost of the edges driven.
+
+use std::sync::Arc;
 
 use crate::buckets::Buckets;
 use crate::costs::{Model, UNREACHABLE};
+use crate::guidance::Guidance;
 use crate::network::Network;
 use crate::patience::look_up;
 
@@ -16,6 +20,10 @@ const STRAIGHT: usize = 2;
 
 /// Entries of an index of (waypoint, heading), which are looked up together.
 const ENTRIES: usize = 4;
+
+/// Extra costs add up to at most this, so that no sum exceeds the range of a time; beyond it, costs
+/// are lower bounds.
+const CEILING: u32 = 1 << 31;
 
 /// Least times to cover an extent along one axis: as whole runs, or as part of a run already
 /// counted.
@@ -52,6 +60,8 @@ pub struct Backward {
     goal: u32,
     loaded: bool,
     start: Option<u32>,
+    /// Extra costs of edges, if the search counts them.
+    guidance: Option<Guidance>,
     /// How robots come to rest at an index of (waypoint, heading).
     arrivals: Vec<Arrival>,
     columns: Vec<Bound>,
@@ -59,7 +69,8 @@ pub struct Backward {
     /// Lower bounds of the time to the goal by column and by row; empty if not used.
     columns_to_go: Vec<Bound>,
     rows_to_go: Vec<Bound>,
-    walk: Vec<(u32, f64)>,
+    /// Waypoint, metres and extra cost from there to the end of the run.
+    walk: Vec<(u32, f64, u32)>,
 }
 
 impl Backward {
@@ -78,6 +89,7 @@ impl Backward {
             goal: 0,
             loaded: false,
             start: None,
+            guidance: None,
             arrivals,
             columns: Vec::new(),
             rows: Vec::new(),
@@ -85,6 +97,16 @@ impl Backward {
             rows_to_go: Vec::new(),
             walk: Vec::new(),
         }
+    }
+
+    /// Memory for searches that add the extra costs of guidance to times.
+    pub fn guided(network: &Network, guidance: Guidance) -> Self {
+        Self { guidance: Some(guidance), ..Self::new(network) }
+    }
+
+    /// Whether the search adds the extra costs of this guidance.
+    pub fn is_guided_by(&self, guidance: &Guidance) -> bool {
+        self.guidance.as_ref().is_some_and(|own| Arc::ptr_eq(own, guidance))
     }
 
     /// Starts a new search for times to `goal`, first those that matter on the way from `start`.
@@ -197,7 +219,7 @@ impl Backward {
             if !self.passable(network, from, node) {
                 continue;
             }
-            let cost = cost + model.roll(length);
+            let cost = dearer(cost + model.roll(length), self.extra(network, from, heading));
             if self.loaded && network.storage[from as usize] {
                 self.start_here(network, model, from, heading, cost);
             } else {
@@ -212,21 +234,22 @@ impl Backward {
             return;
         }
         let mut walk = std::mem::take(&mut self.walk);
-        walk.push((node, 0.0));
-        while let Some((here, total)) = walk.pop() {
+        walk.push((node, 0.0, 0));
+        while let Some((here, total, extra)) = walk.pop() {
             for &(from, length) in network.behind(here, heading) {
                 if !self.passable(network, from, here) {
                     continue;
                 }
                 let total = total + length;
-                let started = cost + model.run(total);
+                let extra = extra.saturating_add(self.extra(network, from, heading));
+                let started = dearer(cost + model.run(total), extra);
                 let only_start = self.loaded && network.storage[from as usize];
                 if total >= model.full_speed && !only_start {
                     self.offer(network, from, heading, ROLLING, started);
                 } else {
                     self.start_here(network, model, from, heading, started);
                     if !only_start {
-                        walk.push((from, total));
+                        walk.push((from, total, extra));
                     }
                 }
             }
@@ -235,6 +258,12 @@ impl Backward {
         for ride in network.rides_to(node) {
             self.offer(network, ride.from, heading, 0, cost + ride.travel as u32);
         }
+    }
+
+    /// The extra cost of driving from a waypoint to the next in a direction.
+    #[inline]
+    fn extra(&self, network: &Network, from: u32, heading: u8) -> u32 {
+        self.guidance.as_ref().map_or(0, |guidance| guidance[network.index(from, heading)])
     }
 
     fn passable(&self, network: &Network, from: u32, to: u32) -> bool {
@@ -301,6 +330,12 @@ impl Backward {
             self.queue.improve(state, cost, total);
         }
     }
+}
+
+/// A cost plus an extra cost.
+#[inline]
+fn dearer(cost: u32, extra: u32) -> u32 {
+    if cost < CEILING { cost.saturating_add(extra).min(CEILING) } else { cost }
 }
 
 /// Prepares bounds of the times from a waypoint: a way covers its extent in x and in y by at least

@@ -5,6 +5,7 @@ pub mod buckets;
 pub mod costs;
 pub mod energy;
 pub mod fleet;
+pub mod guidance;
 pub mod heat;
 pub mod kinematics;
 pub mod log;

@@ -3,10 +3,11 @@
 use std::collections::{BTreeSet, HashSet};
 
 use _core::costs::Model;
+use _core::guidance::{Guidance, guidance};
 use _core::kinematics::Kind;
 use _core::network::{Network, Plan, Ride};
 use _core::reservations::{Interval, Table};
-use _core::search::{End, Guide, Outcome, Pathfinder, Query};
+use _core::search::{End, Guide, Move, Outcome, Pathfinder, Query};
 use _core::units::{FOREVER, Us, ceil_us, floor_us};
 
 struct Random(u64);
@@ -104,6 +105,21 @@ fn random_table(random: &mut Random, network: &Network, start: u32) -> Table {
     table
 }
 
+/// Extra costs of up to 5 s on some edges.
+fn random_guidance(random: &mut Random, network: &Network) -> Guidance {
+    let mut edges = Vec::new();
+    for node in 0..network.nodes as u32 {
+        for heading in 0..network.heading_count() as u8 {
+            if let Some((next, _)) = network.ahead(node, heading)
+                && random.chance(40)
+            {
+                edges.push((node, next, random.below(5_000_000) as u32));
+            }
+        }
+    }
+    guidance(network, &edges).expect("edges").expect("extra costs")
+}
+
 fn free(world: &World, node: u32, from: Us, until: Us) -> bool {
     let row = world.table.row(world.network.resource[node as usize]);
     row.iter().all(|taken| until <= taken.start || from >= taken.end)
@@ -115,24 +131,40 @@ struct World<'a> {
     table: &'a Table,
 }
 
-/// Earliest arrival by trying every departure at which something changes.
-fn brute_force(world: &World, query: &Query) -> Option<Us> {
+/// Extra cost of driving from a waypoint to the next.
+fn extra(world: &World, query: &Query, node: u32, heading: u8) -> Us {
+    query.guidance.map_or(0, |extra| Us::from(extra[world.network.index(node, heading)]))
+}
+
+/// Cost of a way found: its end plus the extra costs of its edges.
+fn cost(world: &World, query: &Query, moves: &[Move]) -> Us {
+    let driven = moves.iter().filter(|step| !step.ride).flat_map(|step| {
+        let line = world.network.line(step.from, step.to, step.heading).map(|stop| stop.0);
+        let tails = std::iter::once(step.from).chain(line).filter(|&node| node != step.to);
+        tails.map(|node| extra(world, query, node, step.heading))
+    });
+    moves.last().map_or(query.ready, |last| last.end) + driven.sum::<Us>()
+}
+
+/// Earliest arrival (with guidance, the least sum of arrival and extra cost) not after `latest`, by
+/// trying every departure at which something changes.
+fn brute_force(world: &World, query: &Query, latest: Us) -> Option<Us> {
     let network = world.network;
-    let mut open = BTreeSet::from([(query.ready, query.start, query.heading)]);
+    let mut open = BTreeSet::from([(query.ready, query.ready, query.start, query.heading)]);
     let mut seen: HashSet<(Us, u32, u8)> = HashSet::new();
-    while let Some((time, node, heading)) = open.pop_first() {
+    while let Some((total, time, node, heading)) = open.pop_first() {
         if !seen.insert((time, node, heading)) {
             continue;
         }
-        if node == query.goal && free(world, node, time, FOREVER) {
-            return Some(time);
+        if node == query.goal && time <= latest && free(world, node, time, FOREVER) {
+            return Some(total);
         }
         if time > 60_000_000 {
-            return None;
+            continue;
         }
         for ride in network.rides_from(node) {
             if free(world, node, time, time + ride.travel) {
-                open.insert((time + ride.travel, ride.to, heading));
+                open.insert((total + ride.travel, time + ride.travel, ride.to, heading));
             }
         }
         for towards in 0..network.heading_count() as u8 {
@@ -140,15 +172,17 @@ fn brute_force(world: &World, query: &Query) -> Option<Us> {
                 .kind
                 .turn(network.headings[heading as usize], network.headings[towards as usize]);
             let mut line = vec![(node, 0.0)];
+            let mut dear = total - time;
             while let Some((next, length)) = network.ahead(line[line.len() - 1].0, towards) {
                 let here = line[line.len() - 1];
                 if !network.may_enter(here.0, next, query.goal, query.loaded) {
                     break;
                 }
                 line.push((next, here.1 + length));
+                dear += extra(world, query, here.0, towards);
                 for departure in departures(world, query.kind, &line, time + turn) {
                     if let Some(arrival) = drive(world, query.kind, &line, time, departure) {
-                        open.insert((arrival, next, towards));
+                        open.insert((arrival + dear, arrival, next, towards));
                     }
                 }
                 if query.loaded && network.storage[next as usize] {
@@ -194,14 +228,14 @@ fn drive(world: &World, kind: &Kind, line: &[(u32, f64)], since: Us, departure: 
 
 #[test]
 fn earliest_arrivals_agree_with_exhaustive_search() {
-    let (found, impossible) = compare(42, 2_000, 1, Guide::Exact, FOREVER);
+    let (found, impossible) = compare(42, 2_000, 1, Guide::Exact, FOREVER, false);
     assert!(found > 500 && impossible > 300, "{found} found, {impossible} impossible");
 }
 
 /// The search knows when elevators can be used at the earliest, and may not think it is later.
 #[test]
 fn earliest_arrivals_over_elevators_agree_with_exhaustive_search() {
-    let (found, impossible) = compare(43, 1_000, 2, Guide::Exact, FOREVER);
+    let (found, impossible) = compare(43, 1_000, 2, Guide::Exact, FOREVER, false);
     assert!(found > 250 && impossible > 150, "{found} found, {impossible} impossible");
 }
 
@@ -209,7 +243,7 @@ fn earliest_arrivals_over_elevators_agree_with_exhaustive_search() {
 #[test]
 fn earliest_arrivals_are_found_with_unhindered_times_near_the_best_way_only() {
     for (seed, floors, near) in [(44, 1, 0), (45, 1, 2_000_000), (46, 2, 0)] {
-        let (found, impossible) = compare(seed, 300, floors, Guide::Near(near), FOREVER);
+        let (found, impossible) = compare(seed, 300, floors, Guide::Near(near), FOREVER, false);
         assert!(found > 70 && impossible > 40, "{found} found, {impossible} impossible");
     }
 }
@@ -218,8 +252,22 @@ fn earliest_arrivals_are_found_with_unhindered_times_near_the_best_way_only() {
 #[test]
 fn arrivals_within_a_detour_agree_with_exhaustive_search() {
     for (seed, guide) in [(47, Guide::Exact), (48, Guide::Near(0))] {
-        let (found, none) = compare(seed, 300, 1, guide, 3_000_000);
+        let (found, none) = compare(seed, 300, 1, guide, 3_000_000, false);
         assert!(found > 40 && none > 70, "{found} found, {none} not");
+    }
+}
+
+/// With guidance, ways have the least sum of arrival time and extra costs.
+#[test]
+fn costs_with_guidance_agree_with_exhaustive_search() {
+    for (seed, floors, guide, detour) in [
+        (49, 1, Guide::Exact, FOREVER),
+        (50, 2, Guide::Exact, FOREVER),
+        (51, 1, Guide::Near(0), FOREVER),
+        (52, 1, Guide::Exact, 3_000_000),
+    ] {
+        let (found, none) = compare(seed, 400, floors, guide, detour, true);
+        assert!(found > 50 && none > 50, "{found} found, {none} not");
     }
 }
 
@@ -236,7 +284,14 @@ fn latest(world: &World, query: &Query) -> Us {
 }
 
 /// Compares random cases; returns how many have a way that is not too late, and how many have none.
-fn compare(seed: u64, cases: usize, floors: usize, guide: Guide, detour: Us) -> (u32, u32) {
+fn compare(
+    seed: u64,
+    cases: usize,
+    floors: usize,
+    guide: Guide,
+    detour: Us,
+    guided: bool,
+) -> (u32, u32) {
     let kind = kind();
     let mut random = Random(seed);
     let (mut found, mut impossible) = (0, 0);
@@ -246,6 +301,7 @@ fn compare(seed: u64, cases: usize, floors: usize, guide: Guide, detour: Us) -> 
         let goal = random.below(12) as u32;
         let table = random_table(&mut random, &network, start);
         let model = Model::new(&network, &kind);
+        let extra = guided.then(|| random_guidance(&mut random, &network));
         let query = Query {
             start,
             heading: random.below(4) as u8,
@@ -260,20 +316,21 @@ fn compare(seed: u64, cases: usize, floors: usize, guide: Guide, detour: Us) -> 
             detour,
             guide,
             times: None,
+            guidance: extra.as_ref(),
         };
         let world = World { network: &network, table: &table };
         if !free(&world, start, query.ready, query.ready + 1) {
             continue;
         }
-        let expected = brute_force(&world, &query).filter(|&end| end <= latest(&world, &query));
+        let expected = brute_force(&world, &query, latest(&world, &query));
         let mut pathfinder = Pathfinder::new(&network);
         let outcome = match guide {
-            Guide::Exact => pathfinder.search(&network, &table, &query),
-            Guide::Near(_) if pathfinder.aim(&network, &query).is_none() => Outcome::NoWay,
-            Guide::Near(_) => pathfinder.seek(&network, &table, &query, 4, u64::MAX),
+            Guide::Exact if !guided => pathfinder.search(&network, &table, &query),
+            _ if pathfinder.aim(&network, &query).is_none() => Outcome::NoWay,
+            _ => pathfinder.seek(&network, &table, &query, 4, u64::MAX),
         };
         let got = match outcome {
-            Outcome::Found(moves) => Some(moves.last().map_or(query.ready, |last| last.end)),
+            Outcome::Found(moves) => Some(cost(&world, &query, &moves)),
             _ => None,
         };
         assert_eq!(got, expected, "case {case}: {start} to {goal}, loaded {}", query.loaded);
@@ -308,9 +365,10 @@ fn bounds_never_exceed_the_time_on_an_empty_network() {
                 detour: FOREVER,
                 guide: Guide::Exact,
                 times: None,
+                guidance: None,
             };
             let bound = times[network.index(start, 0)];
-            match brute_force(&World { network: &network, table: &table }, &query) {
+            match brute_force(&World { network: &network, table: &table }, &query, FOREVER) {
                 // each run's time is rounded down in the bound and up in the plan
                 Some(time) => {
                     assert!((0..20).contains(&(time - Us::from(bound))), "{time} {bound}")
@@ -319,4 +377,43 @@ fn bounds_never_exceed_the_time_on_an_empty_network() {
             }
         }
     }
+}
+
+/// Extra costs of zero change no plan.
+#[test]
+fn guidance_of_zeros_leaves_plans_as_they_are() {
+    let kind = kind();
+    let mut random = Random(53);
+    let mut found = 0;
+    for case in 0..400 {
+        let network = random_network(&mut random, 1 + case % 2);
+        let start = random.below(12) as u32;
+        let table = random_table(&mut random, &network, start);
+        let model = Model::new(&network, &kind);
+        let zeros: Guidance = vec![0; network.nodes * network.heading_count()].into();
+        let query = Query {
+            start,
+            heading: random.below(4) as u8,
+            ready: 1_000_000,
+            goal: random.below(12) as u32,
+            loaded: random.chance(50),
+            stored: &[],
+            kind: &kind,
+            model: &model,
+            budget: u64::MAX,
+            end: End::ForGood,
+            detour: FOREVER,
+            guide: Guide::Exact,
+            times: None,
+            guidance: None,
+        };
+        let mut pathfinder = Pathfinder::new(&network);
+        let plain = pathfinder.search(&network, &table, &query);
+        let labels = pathfinder.expansions;
+        let guided = Query { guidance: Some(&zeros), ..query };
+        assert_eq!(plain, pathfinder.search(&network, &table, &guided), "case {case}");
+        assert_eq!(pathfinder.expansions, 2 * labels, "case {case}");
+        found += u32::from(matches!(plain, Outcome::Found(_)));
+    }
+    assert!(found > 100, "{found} found");
 }

@@ -87,6 +87,7 @@ impl Fleet {
             detour: FOREVER,
             guide: Guide::Exact,
             times: None,
+            guidance: None,
         };
         let found = pathfinder.search(network, table, &query);
         self.counters.planning += begun.elapsed();

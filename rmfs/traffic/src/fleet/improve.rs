@@ -157,12 +157,15 @@ impl Fleet {
     }
 
     fn plan_again(&mut self, agent: &Agent) -> Option<Vec<Move>> {
-        let Fleet { network, kinds, robots, table, pathfinder, costs, per_leg, .. } = self;
+        let Fleet { network, kinds, robots, table, pathfinder, costs, per_leg, guidance, .. } =
+            self;
+        let guidance = guidance.as_ref();
         let holder = table.final_holder(network.resource[agent.goal as usize]);
         if holder.is_some_and(|holder| holder != agent.robot) {
             return None;
         }
-        let mut scene = Scene { now: self.now, network, kinds, robots, table, pathfinder, costs };
+        let mut scene =
+            Scene { now: self.now, network, kinds, robots, table, pathfinder, costs, guidance };
         let answer = per_leg.plan(&mut scene, std::slice::from_ref(agent)).pop();
         let Some(Answer::Way(mut moves)) = answer else { return None };
         postpone(network, table, &kinds[agent.kind as usize], &mut moves);

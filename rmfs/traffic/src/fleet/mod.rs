@@ -34,6 +34,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::costs::Cache;
+use crate::guidance::{Guidance, guidance};
 use crate::kinematics::Kind;
 use crate::log::Log;
 use crate::network::Network;
@@ -152,6 +153,8 @@ pub struct Fleet {
     /// Whether a pod is stored at each waypoint.
     stored: Vec<bool>,
     budget: u64,
+    /// Extra costs of edges for the planner per leg.
+    guidance: Option<Guidance>,
     /// Plans whole legs; with a rolling planner, only moves within queues.
     per_leg: Box<dyn Planner>,
     rolling: Option<Rolling>,
@@ -203,6 +206,7 @@ impl Fleet {
             pathfinder: Pathfinder::new(&network),
             per_leg,
             rolling,
+            guidance: None,
             lateness: None,
             pace: None,
             costs: Cache::new(&network, &kinds, cost_bytes),
@@ -244,6 +248,18 @@ impl Fleet {
             return Err(format!("no waypoint {waypoint} for a pod"));
         }
         waypoints.iter().for_each(|&waypoint| self.stored[waypoint as usize] = true);
+        Ok(())
+    }
+
+    /// Lets the planner prefer ways by extra costs of edges (from, to, microseconds).
+    ///
+    /// # Errors
+    /// If there is no such edge, or the planner is rolling.
+    pub fn set_guidance(&mut self, edges: &[(u32, u32, u32)]) -> Result<(), String> {
+        if self.rolling.is_some() {
+            return Err("only planners per leg use guidance".into());
+        }
+        self.guidance = guidance(&self.network, edges)?;
         Ok(())
     }
 

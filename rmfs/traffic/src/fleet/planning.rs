@@ -46,7 +46,10 @@ impl Fleet {
 
     fn plan_untimed(&mut self, robot: u32, goal: u32, effort: Effort, keep: usize) -> bool {
         self.settle(robot);
-        let Fleet { network, kinds, robots, table, pathfinder, costs, per_leg, pace, .. } = self;
+        let Fleet {
+            network, kinds, robots, table, pathfinder, costs, per_leg, pace, guidance, ..
+        } = self;
+        let guidance = guidance.as_ref();
         let state = &robots[robot as usize];
         let kind = &kinds[state.kind as usize];
         let holder = table.final_holder(network.resource[goal as usize]);
@@ -80,7 +83,7 @@ impl Fleet {
         let in_turn = pace.is_some();
         let mut agent = agent_after(kept, now);
         let (begun, labels) = (Instant::now(), pathfinder.expansions);
-        let mut scene = Scene { now, network, kinds, robots, table, pathfinder, costs };
+        let mut scene = Scene { now, network, kinds, robots, table, pathfinder, costs, guidance };
         let mut answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
         let mut awaited = 0;
         let mut could_depart = agent.ready;
@@ -94,7 +97,8 @@ impl Fleet {
                 // its plan is there later than it departs: the search is repeated from then on
                 kept = stop_for(network, table, state, now, kept, until);
                 agent = agent_after(kept, until);
-                let mut scene = Scene { now, network, kinds, robots, table, pathfinder, costs };
+                let mut scene =
+                    Scene { now, network, kinds, robots, table, pathfinder, costs, guidance };
                 answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
             }
             let turn = pace.turn_of(robot).expect("its turn");

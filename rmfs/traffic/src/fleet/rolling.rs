@@ -271,7 +271,16 @@ impl Fleet {
         let rolling = rolling.as_mut().expect("a rolling planner");
         rolling.wishes.call_due = false;
         rolling.wishes.last_call = self.now;
-        let mut scene = Scene { now: self.now, network, kinds, robots, table, pathfinder, costs };
+        let mut scene = Scene {
+            now: self.now,
+            network,
+            kinds,
+            robots,
+            table,
+            pathfinder,
+            costs,
+            guidance: None,
+        };
         let answers = rolling.planner.plan(&mut scene, &agents);
         self.counters.called(begun.elapsed());
         let mut resting = Vec::new();

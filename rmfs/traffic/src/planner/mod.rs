@@ -29,6 +29,7 @@ use std::fmt::Debug;
 use serde::{Deserialize, Serialize};
 
 use crate::costs::Cache;
+use crate::guidance::Guidance;
 use crate::kinematics::Kind;
 use crate::network::Network;
 use crate::reservations::Table;
@@ -50,6 +51,8 @@ pub struct Scene<'a> {
     pub table: &'a Table,
     pub pathfinder: &'a mut Pathfinder,
     pub costs: &'a mut Cache,
+    /// Extra costs of edges, which planners per leg add to times.
+    pub guidance: Option<&'a Guidance>,
 }
 
 /// A robot that needs to drive.

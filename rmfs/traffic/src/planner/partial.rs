@@ -73,6 +73,7 @@ impl Partial {
             detour: FOREVER,
             guide: Guide::Exact,
             times: Some(times),
+            guidance: None,
         };
         let mut stops = scene.pathfinder.next_stops(scene.network, table, &query, slack);
         let network = scene.network;

@@ -70,6 +70,7 @@ pub fn search(
         detour: FOREVER,
         guide: Guide::Exact,
         times: Some(times),
+        guidance: None,
     };
     match scene.pathfinder.search(scene.network, table, &query) {
         Outcome::Found(moves) => Some(moves),

@@ -73,7 +73,11 @@ impl Swift {
         }
         let earliest = query.ready;
         // who would have to wait for the goal to be free starts in time for that
-        let in_time = earliest.max(goal_free - unhindered - self.wait);
+        let least = match query.guidance {
+            Some(_) => pathfinder.least_cost(network, &query),
+            None => unhindered,
+        };
+        let in_time = earliest.max(goal_free - least - self.wait);
         query.ready = if in_time < until { in_time } else { earliest };
         let mut outcome = pathfinder.seek(network, table, &query, weight, labels.min(query.budget));
         if outcome == Outcome::OutOfBudget {

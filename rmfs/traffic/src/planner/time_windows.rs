@@ -40,6 +40,7 @@ impl TimeWindows {
             detour: FOREVER,
             guide: Guide::Exact,
             times: None,
+            guidance: scene.guidance,
         };
         let before = scene.pathfinder.expansions;
         let Scene { network, table, pathfinder, .. } = scene;
@@ -165,6 +166,7 @@ mod tests {
             table: &table,
             pathfinder: &mut Pathfinder::new(&network),
             costs: &mut Cache::new(&network, &kinds, 1_000_000),
+            guidance: None,
         };
         match planner.plan(&mut scene, &[agent]).pop() {
             Some(Answer::Way(moves)) => Some(moves),
@@ -235,6 +237,7 @@ mod tests {
             detour: FOREVER,
             guide: Guide::Exact,
             times: None,
+            guidance: None,
         }
     }
 

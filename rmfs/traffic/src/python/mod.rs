@@ -187,6 +187,11 @@ impl Core {
         Ok(Self::over(fleet?.map_err(PyValueError::new_err)?, in_python, fault))
     }
 
+    /// Lets the planner prefer ways by extra costs of edges (from, to, microseconds).
+    fn set_guidance(&mut self, edges: Vec<(u32, u32, u32)>) -> PyResult<()> {
+        self.try_with(|fleet| fleet.set_guidance(&edges))
+    }
+
     /// An independent copy, with the given copy of a planner written in Python.
     fn fork(&mut self, code: Option<Py<PyAny>>) -> PyResult<Self> {
         let in_python = self.in_python;

@@ -9,6 +9,10 @@
 //! of a label, it first examines those that can lie on a way not much longer than the best, and the
 //! others when it returns to the label.
 //!
+//! With guidance, a way has the least sum of arrival time and extra cost of its edges. Of two labels
+//! of a state, the one that is earlier need not be the cheaper one then, so a label is only dropped
+//! for one that is neither later nor dearer.
+//!
 //! Related: SIPP (Phillips, Likhachev 2011), stationary SIPP in MASS (Yan, Li 2025), free time
 //! windows (ter Mors 2010).
 
@@ -25,6 +29,7 @@ use std::collections::BinaryHeap;
 
 use crate::backward::Backward;
 use crate::costs::{UNREACHABLE, time};
+use crate::guidance::Guidance;
 use crate::network::{NONE, Network};
 use crate::patience::look_up;
 use crate::reservations::{Table, Windows};
@@ -39,6 +44,8 @@ struct Label {
     /// The free interval.
     from: Us,
     until: Us,
+    /// Extra cost of the edges driven so far.
+    extra: Us,
     arrival: Us,
     departure: Us,
     parent: u32,
@@ -74,6 +81,8 @@ pub struct Pathfinder {
     newest: Vec<(u32, u32)>,
     stamp: u32,
     guide: Backward,
+    /// The same with extra costs, once a search has used them.
+    guided: Option<Box<Backward>>,
     /// Total time up to which the guide knows ways.
     guided_to: u32,
     stable: Windows,
@@ -92,6 +101,7 @@ impl Pathfinder {
             newest: vec![(0, NONE); network.nodes * network.heading_count()],
             stamp: 0,
             guide: Backward::new(network),
+            guided: None,
             guided_to: UNREACHABLE,
             stable: Vec::new(),
             windows: Vec::new(),
@@ -128,18 +138,29 @@ impl Pathfinder {
         if let Some(times) = query.times {
             return time(times[network.index(start, heading)]);
         }
-        let guide = &mut self.guide;
-        guide.begin(network, model, goal, loaded, Some(start));
-        while !guide.knows(network, start, heading) {
-            let reach = guide.reach().saturating_add(GUIDE_STEP);
-            guide.advance(network, model, reach);
-        }
-        let unhindered = guide.to_go(network, start, heading);
-        self.guided_to = match query.guide {
-            Guide::Near(slack) if guide.bound_to_goal(network, model) => {
-                unhindered.saturating_add(slack as u32)
+        let aimed = |guide: &mut Backward| {
+            guide.begin(network, model, goal, loaded, Some(start));
+            while !guide.knows(network, start, heading) {
+                let reach = guide.reach().saturating_add(GUIDE_STEP);
+                guide.advance(network, model, reach);
             }
-            _ => UNREACHABLE,
+            let least = guide.to_go(network, start, heading);
+            let reach = match query.guide {
+                Guide::Near(slack) if guide.bound_to_goal(network, model) => {
+                    least.saturating_add(slack as u32)
+                }
+                _ => UNREACHABLE,
+            };
+            (least, reach)
+        };
+        let (unhindered, reach) = aimed(&mut self.guide);
+        self.guided_to = match query.guidance {
+            Some(guidance) => {
+                self.guided.take_if(|guide| !guide.is_guided_by(guidance));
+                let with_extra = || Box::new(Backward::guided(network, Guidance::clone(guidance)));
+                aimed(self.guided.get_or_insert_with(with_extra)).1
+            }
+            None => reach,
         };
         time(unhindered)
     }
@@ -158,9 +179,28 @@ impl Pathfinder {
         Search::new(self, network, table, query, weight).run(labels)
     }
 
-    /// Time without other robots of the way just searched for, if no times were given.
+    /// Time of the quickest way without other robots between the ends of the way just searched for,
+    /// if no times were given; guidance is ignored.
     pub fn unhindered(&self, network: &Network, start: u32, heading: u8) -> Us {
         Us::from(self.guide.to_go(network, start, heading))
+    }
+}
+
+impl Pathfinder {
+    /// The least time plus extra cost without other robots of the way just aimed at.
+    pub fn least_cost(&self, network: &Network, query: &Query) -> Us {
+        Us::from(self.guide_of(query).to_go(network, query.start, query.heading))
+    }
+
+    /// The search for unhindered times, or for costs where the query has guidance.
+    fn guide_of(&self, query: &Query) -> &Backward {
+        let guided = self.guided.as_deref().filter(|_| query.guidance.is_some());
+        guided.unwrap_or(&self.guide)
+    }
+
+    fn guide_of_mut(&mut self, query: &Query) -> &mut Backward {
+        let guided = self.guided.as_deref_mut().filter(|_| query.guidance.is_some());
+        guided.unwrap_or(&mut self.guide)
     }
 }
 
@@ -210,7 +250,7 @@ impl<'a> Search<'a> {
             return Outcome::NoWay;
         }
         if query.detour < FOREVER {
-            let unhindered = self.to_go(query.start, query.heading).unwrap_or(0);
+            let unhindered = self.time_to_go(query.start, query.heading).unwrap_or(0);
             self.latest = (query.ready + unhindered).max(self.goal_free) + query.detour;
         }
         if query.goal != NONE {
@@ -228,6 +268,7 @@ impl<'a> Search<'a> {
             dead: false,
             from,
             until,
+            extra: 0,
             arrival: query.ready,
             departure: query.ready,
             parent: NONE,
@@ -319,16 +360,42 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Lower bound of the time from rest to the goal, or `None` if there is no way.
+    /// Lower bound of the time (with guidance: plus extra cost) from rest to the goal, or `None` if
+    /// there is no way.
     fn to_go(&self, node: u32, heading: u8) -> Option<Us> {
         if self.query.goal == NONE {
             return Some(0);
         }
         let entry = match self.query.times {
             Some(times) => times[self.network.index(node, heading)],
-            None => self.memory.guide.to_go(self.network, node, heading),
+            None => self.memory.guide_of(self.query).to_go(self.network, node, heading),
         };
         time(entry)
+    }
+
+    /// Lower bound of the time alone.
+    fn time_to_go(&self, node: u32, heading: u8) -> Option<Us> {
+        match self.query.guidance {
+            Some(_) => time(self.memory.guide.to_go(self.network, node, heading)),
+            None => self.to_go(node, heading),
+        }
+    }
+
+    /// Whether no way over a state, reached at `arrival`, arrives in time; `to_go` is what
+    /// [`Search::to_go`] says of it.
+    fn is_too_late(&self, (node, heading): (u32, u8), arrival: Us, to_go: Us) -> bool {
+        let left = match self.query.guidance {
+            Some(_) if self.latest < FOREVER => self.time_to_go(node, heading).unwrap_or(FOREVER),
+            Some(_) => return false,
+            None => to_go,
+        };
+        arrival + left > self.latest
+    }
+
+    /// The extra cost of driving from a waypoint to the next in a direction.
+    fn extra(&self, node: u32, heading: u8) -> Us {
+        let guidance = self.query.guidance;
+        guidance.map_or(0, |guidance| Us::from(guidance[self.network.index(node, heading)]))
     }
 
     /// A lower bound of what [`Search::to_go`] says of a waypoint: straight lines, where these are
@@ -337,7 +404,7 @@ impl<'a> Search<'a> {
         if self.query.goal == NONE || self.query.times.is_some() {
             return 0;
         }
-        Us::from(self.memory.guide.straight_to_goal(self.network, node))
+        Us::from(self.memory.guide_of(self.query).straight_to_goal(self.network, node))
     }
 
     /// Total time over a label: the time at which it is reached plus a (weighted) bound of the
@@ -349,20 +416,25 @@ impl<'a> Search<'a> {
         if is_before { self.elevator_free } else { estimate }
     }
 
+    /// The same with the extra cost of the way to a label, which is left at `time`.
+    fn total(&self, label: &Label, time: Us, to_go: Us) -> Us {
+        self.estimate(label.node, time, to_go) + label.extra
+    }
+
     /// If the guide does not know the label yet, extends it until the label is known or can wait;
     /// returns a larger estimate.
     fn sharpen(&mut self, label: &Label, estimate: Us) -> Option<Us> {
         if self.query.goal == NONE || self.query.times.is_some() {
             return None;
         }
-        while self.memory.guide.reach() < self.memory.guided_to
-            && !self.memory.guide.knows(self.network, label.node, label.heading)
+        while self.memory.guide_of(self.query).reach() < self.memory.guided_to
+            && !self.memory.guide_of(self.query).knows(self.network, label.node, label.heading)
         {
-            let reach = self.memory.guide.reach().saturating_add(GUIDE_STEP);
-            self.memory.guide.advance(self.network, self.query.model, reach);
+            let guide = self.memory.guide_of_mut(self.query);
+            let reach = guide.reach().saturating_add(GUIDE_STEP);
+            guide.advance(self.network, self.query.model, reach);
             let to_go = self.to_go(label.node, label.heading);
-            let sharper =
-                to_go.map_or(FOREVER, |time| self.estimate(label.node, label.arrival, time));
+            let sharper = to_go.map_or(FOREVER, |time| self.total(label, label.arrival, time));
             if sharper > estimate {
                 return Some(sharper);
             }
@@ -373,11 +445,11 @@ impl<'a> Search<'a> {
     /// Adds a label unless a known one is at least as good.
     fn offer(&mut self, mut label: Label) {
         let Some(to_go) = self.to_go(label.node, label.heading) else { return };
-        if label.arrival + to_go > self.latest {
+        if self.is_too_late((label.node, label.heading), label.arrival, to_go) {
             return;
         }
-        let estimate = self.estimate(label.node, label.arrival, to_go);
-        let stays = self.waits_until(&label).map(|end| self.estimate(label.node, end, to_go));
+        let estimate = self.total(&label, label.arrival, to_go);
+        let stays = self.waits_until(&label).map(|end| self.total(&label, end, to_go));
         let memory = &mut *self.memory;
         let newest = &mut memory.newest[self.network.index(label.node, label.heading)];
         if newest.0 != memory.stamp {
@@ -387,10 +459,10 @@ impl<'a> Search<'a> {
         while other != NONE {
             let known = &mut memory.labels[other as usize];
             if known.from == label.from {
-                if known.arrival <= label.arrival {
+                if known.arrival <= label.arrival && known.extra <= label.extra {
                     return;
                 }
-                known.dead = true;
+                known.dead |= known.arrival >= label.arrival && known.extra >= label.extra;
             }
             other = known.sibling;
         }

@@ -36,6 +36,7 @@ impl Pathfinder {
             dead: false,
             from,
             until,
+            extra: 0,
             arrival: query.ready,
             departure: query.ready,
             parent: NONE,

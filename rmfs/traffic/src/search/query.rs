@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::costs::Model;
+use crate::guidance::Guidance;
 use crate::kinematics::Kind;
 use crate::units::Us;
 
@@ -72,6 +73,9 @@ pub struct Query<'a> {
     pub guide: Guide,
     /// Exact unhindered times to the goal, as [`crate::costs::Table`]; searched for if not given.
     pub times: Option<&'a [u32]>,
+    /// Extra costs of edges: the way found has the least sum of arrival time and extra cost. Only
+    /// with a goal and without given times.
+    pub guidance: Option<&'a Guidance>,
 }
 
 /// How a search ended.

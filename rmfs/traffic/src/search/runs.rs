@@ -28,22 +28,24 @@ impl Search<'_> {
         self.memory.line.push((label.node, 0.0));
         let mut settled = 0;
         let mut here = (label.node, 0.0);
+        let mut extra = label.extra;
         let mut nearest = Us::MAX;
         while let Some((next, length)) = network.ahead(here.0, heading) {
             if !self.may_enter(here.0, next) {
                 break;
             }
+            extra += self.extra(here.0, heading);
             here = (next, here.1 + length);
             let arrival = ready + Us::from(self.query.model.run(here.1));
             let straight = self.straight_to_goal(next);
-            if self.nothing_ahead(arrival, straight, nearest, upto.max(beyond)) {
+            if self.nothing_ahead((arrival, extra), straight, nearest, upto.max(beyond)) {
                 break;
             }
             nearest = straight;
             self.memory.line.push(here);
             if let Some(to_go) = self.to_go(next, heading) {
-                let estimate = self.estimate(next, arrival, to_go);
-                if arrival + to_go > self.latest {
+                let estimate = self.estimate(next, arrival, to_go) + extra;
+                if self.is_too_late((next, heading), arrival, to_go) {
                     // of no use, now or later
                 } else if estimate > upto {
                     beyond = beyond.min(estimate);
@@ -54,7 +56,7 @@ impl Search<'_> {
                     if self.memory.stable.is_empty() {
                         break;
                     }
-                    self.stop(parent, label, heading, settled);
+                    self.stop(parent, label, heading, (settled, extra));
                 }
             }
             if self.query.loaded && network.storage[next as usize] {
@@ -65,12 +67,13 @@ impl Search<'_> {
     }
 
     /// Whether no stop from here on along a line can be reached so soon that its total time is below
-    /// `bound`. `straight` and `nearest`: lower bounds of the time to the goal from here and from
-    /// the waypoint before.
-    fn nothing_ahead(&self, arrival: Us, straight: Us, nearest: Us, bound: Us) -> bool {
+    /// `bound`. `reached`: time and extra cost here; `straight` and `nearest`: lower bounds of the
+    /// time to the goal from here and from the waypoint before.
+    fn nothing_ahead(&self, reached: (Us, Us), straight: Us, nearest: Us, bound: Us) -> bool {
+        let (arrival, extra) = reached;
         // once the line leads away from the goal, it does so to its end
         let to_go = if straight >= nearest { straight } else { 0 };
-        arrival + to_go * self.weight / 4 >= bound || arrival + to_go > self.latest
+        arrival + to_go * self.weight / 4 + extra >= bound || arrival + to_go > self.latest
     }
 
     fn may_enter(&self, from: u32, to: u32) -> bool {
@@ -126,8 +129,9 @@ impl Search<'_> {
         settled
     }
 
-    /// Offers a stop at the end of the line, one label per free interval there.
-    fn stop(&mut self, parent: u32, label: &Label, heading: u8, settled: usize) {
+    /// Offers a stop at the end of the line, one label per free interval there; the extra cost of
+    /// the way up to it is given.
+    fn stop(&mut self, parent: u32, label: &Label, heading: u8, (settled, extra): (usize, Us)) {
         let network = self.network;
         let memory = &mut *self.memory;
         let last = memory.line.len() - 1;
@@ -162,6 +166,7 @@ impl Search<'_> {
                     dead: false,
                     from,
                     until,
+                    extra,
                     arrival: departure + duration,
                     departure,
                     parent,
