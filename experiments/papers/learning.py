@@ -1,14 +1,15 @@
-"""Comparison of look-ahead, trained linear rules and optimisers with plain rules.
+"""Comparison of look-ahead, trained linear rules, trained networks and optimisers with plain rules.
 
-A linear rule chooses the candidate with the greatest weighted sum of features; look-ahead tries out
-decisions in copies of the run (docs: learning). A regime is a site with a kind of demand and a
-number of robots. The study has four regimes at the small site (layout `small`) or, with `--sites`,
-one at the default site and one at the large site (layouts `default` and `large`). The seeds were
-not used in training. Every arm is compared with the default rules and with the best plain rule of
-its regime. In regimes with a backlog, the measure is the number of units picked; in those with
-orders that arrive over time, it is the number of orders completed late, plus those overdue at the
-end. p values are corrected by Holm's method over all arms of a regime. A bound that holds for all
-controllers, whatever they know, shows how much room there is for improvement.
+A linear rule chooses the candidate with the greatest weighted sum of features; a network trained by
+PPO scores candidates in its place; look-ahead tries out decisions in copies of the run (docs:
+learning). A regime is a site with a kind of demand and a number of robots. The study has four
+regimes at the small site (layout `small`) or, with `--sites`, one at the default site and one at
+the large site (layouts `default` and `large`). The seeds were not used in training. Every arm is
+compared with the default rules and with the best plain rule of its regime. In regimes with a
+backlog, the measure is the number of units picked; in those with orders that arrive over time, it
+is the number of orders completed late, plus those overdue at the end. p values are corrected by
+Holm's method over all arms of a regime. A bound that holds for all controllers, whatever they know,
+shows how much room there is for improvement.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ REGIME, POLICY = "regime", "policy"
 UNITS, LATE = "units_picked", "late_or_overdue"
 SHOWN = ("on_time_share", "order_turnover_mean_s", "bundles_per_h")
 COLUMNS = (UNITS, "orders_late", "orders_overdue_end", "units_per_h_bound", *SHOWN)
-NOT_RULES = ("linear", "tried", "optimiser")
+NOT_RULES = ("linear", "PPO", "tried", "optimiser")
 """Words in the names of arms that are not plain rules."""
 
 
@@ -151,8 +152,8 @@ def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
         "bound: no controller can pick more units, or have fewer late orders, whatever it knows; "
         "share of the room: gain on the default rules divided by the distance of these rules from "
         "the bound. Gains are paired by seed; p: paired t test after Holm's correction within the "
-        "regime. TA tried: look-ahead by TA rollout. bundles_per_h: a controller "
-        "that stores fewer bundles than others uses up stock."
+        "regime. TA tried: look-ahead by TA rollout. PPO: network rules. bundles_per_h: a "
+        "controller that stores fewer bundles than others uses up stock."
     )
     return Table(made, decimals, caption)
 

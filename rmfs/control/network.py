@@ -38,17 +38,17 @@ PREFIX = "all."
 """Prefix of the features of the warehouse in `Network.inputs`."""
 
 STARTS: dict[str, tuple[dict[str, float], float | None]] = {
-    "poa": ({"in_stock": 16.0, "inbound_units": 2.0, "age_s": 1.0, "due_in_s": -1.0}, 3.0),
-    "pick pod": ({"units": 5.0, "orders": 6.0, "reach_s": -1.0, "bring_s": -1.0}, -4.0),
-    "replenishment pod": ({"bundles": 2.5, "reach_s": -1.0, "bring_s": -1.0}, -4.0),
-    "next station": ({"away_s": -1.0, "units": 2.0}, None),
-    "place": ({"away_s": -6.0, "back_s": -6.0}, None),
+    "poa": ({"in_stock": 32.0, "inbound_units": 4.0, "age_s": 2.0, "due_in_s": -2.0}, 6.0),
+    "pick pod": ({"units": 10.0, "orders": 12.0, "reach_s": -2.0, "bring_s": -2.0}, -8.0),
+    "replenishment pod": ({"bundles": 5.0, "reach_s": -2.0, "bring_s": -2.0}, -8.0),
+    "next station": ({"away_s": -2.0, "units": 4.0}, None),
+    "place": ({"away_s": -12.0, "back_s": -12.0}, None),
     "ta": (
         {
-            **{"work": 5.0, "pick": 0.5, "store": 4.0, "move": -10.0, "rest": -5.0},
-            **{"away_s": -2.0, "units": 0.5, "robots": -4.0},
+            **{"work": 10.0, "pick": 1.0, "store": 8.0, "move": -20.0, "rest": -10.0},
+            **{"away_s": -4.0, "units": 1.0, "robots": -8.0},
         },
-        -8.0,
+        -16.0,
     ),
 }
 """For each kind of question, the weights of the features before training, and the score of

@@ -84,7 +84,12 @@ def test_orders_that_are_never_done_are_late_too() -> None:
 
 
 def test_the_best_rule_is_neither_trained_nor_tried_nor_an_optimiser() -> None:
-    better = {"TA tried": 9.0, "linear, units": 8.0, "optimiser, split orders": 12.0}
+    better = {
+        "TA tried": 9.0,
+        "linear, units": 8.0,
+        "PPO, units": 8.5,
+        "optimiser, split orders": 12.0,
+    }
     made = results(**{"POA due-time": 1.0, **better})
     for regime, goal in (("backlog, tight", UNITS), ("arrivals, tight", LATE)):
         assert best_rule(made[made["regime"] == regime], goal) == "POA due-time"
