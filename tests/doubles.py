@@ -132,11 +132,12 @@ class FreeTraffic:
         self._program[robot] = list(steps)
         self._begin(robot)
 
-    def advance(self, until_us: int) -> list[tuple[int, int, int, int]]:
+    def advance(self, until_us: int, ignored: int = 0) -> list[tuple[int, int, int, int]]:
         while not self._outbox and self._heap and self._heap[0][0] <= until_us:
             self.now_us, _, robot, turn, kind = heapq.heappop(self._heap)
             if turn == self._turn[robot]:
                 self._happen(robot, kind)
+            self._outbox = [one for one in self._outbox if not ignored >> one[1] & 1]
         if not self._outbox:
             self.now_us = max(self.now_us, until_us)
         events, self._outbox = self._outbox, []

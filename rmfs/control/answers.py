@@ -18,15 +18,22 @@ class Candidates:
 
     `candidates[row]` is the answer of that row, to be passed to `Decision.answer`.
 
-    Attributes
+    Parameters
     ----------
     columns
-        Arrays of shape (C,) by name; `MEANINGS` gives their units and meanings.
+        Arrays of shape (C,) by name.
+    answer
+        Function that returns the answer of a row.
     """
 
     def __init__(self, columns: Columns, answer: Callable[[int], Any]) -> None:
-        self.columns = columns
+        self._columns = columns
         self._answer = answer
+
+    @property
+    def columns(self) -> Columns:
+        """Arrays of shape (C,) by name; `MEANINGS` gives their units and meanings."""
+        return self._columns
 
     def __len__(self) -> int:
         return len(next(iter(self.columns.values())))

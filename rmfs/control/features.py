@@ -14,7 +14,8 @@ import numpy as np
 
 from rmfs.control.candidates import MEANINGS
 from rmfs.control.problems import Problem
-from rmfs.control.task_candidates import MOVE, REST, STORE, WORK
+from rmfs.control.task_candidates import FEATURES, TaskCandidates
+from rmfs.traffic import _core as compiled  # the package has one compiled library
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -24,11 +25,11 @@ if TYPE_CHECKING:
     from rmfs.control.candidates import Candidates
     from rmfs.control.view import View
 
+    Weights = list[tuple[int, float]]
+    """Weights of features: pairs of a feature's place in `COLUMNS` and its weight."""
+
 LIMIT = 10.0
 """Maximum absolute value of a feature; larger values are clipped."""
-
-FAR = 1e9
-"""Maximum value of a column when candidates are ranked; larger values are clipped."""
 
 KINDS: dict[Problem, tuple[str, ...]] = {
     Problem.POA: ("poa",),
@@ -56,7 +57,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "rps": ("space", "free_space"),
     "sa": ("active", "robots"),
     "mm": (),
-    "ta": ("work", "pick", "store", "move", "rest", "away_s", "units", "robots"),
+    "ta": FEATURES,
     "ca": ("level_share", "away_s", "robots"),
     "pick pod": ("units", "orders", "reach_s", "bring_s"),
     "replenishment pod": ("bundles", "reach_s", "bring_s"),
@@ -65,9 +66,6 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "move": ("distance_m", "reach_s"),
 }
 """The features of each kind of question: columns of its candidates, or keys of `OWN_MEANINGS`."""
-
-_KIND_OF_TASK = {"work": WORK, "store": STORE, "move": MOVE, "rest": REST}
-"""Features of tasks, by name: 1 if the column `kind` has this value."""
 
 SCALES: dict[str, float] = {
     "lines": 5.0,
@@ -150,16 +148,16 @@ def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[
 
 def unscaled(candidates: Candidates, kind: str, view: View) -> NDArray[np.float64]:
     """Return the F unscaled features of the C candidates, in order of `COLUMNS`, shape (F, C)."""
+    if isinstance(candidates, TaskCandidates):
+        return candidates.features()
     columns = candidates.columns
     found = np.empty((len(COLUMNS[kind]), len(candidates)))
     for values, name in zip(found, COLUMNS[kind], strict=True):
         if name in columns:
             values[:] = columns[name]
-        elif name == "orders_at_station":
+        else:  # of the features that are no columns, only this one is not of tasks
             orders = np.array([len(station.orders) for station in view.pick_stations], np.float64)
             values[:] = orders[columns["station"]]
-        else:
-            np.equal(columns["kind"], _KIND_OF_TASK[name], out=values)
     return found
 
 
@@ -177,21 +175,22 @@ def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> 
     return clipped
 
 
-def best_rows(
-    columns: Mapping[str, NDArray[np.float64]], weights: Mapping[str, float], k: int
-) -> NDArray[np.intp]:
-    """Return the rows of the k candidates whose weighted sums of columns are greatest, best first.
+def weights_of(kind: str, rankings: Mapping[str, Mapping[str, float]] = RANKINGS) -> Weights:
+    """Return the ranking of a kind of question as pairs of a place in `COLUMNS` and a weight."""
+    return [(COLUMNS[kind].index(name), weight) for name, weight in rankings[kind].items()]
 
-    If there are fewer than k candidates, all rows are returned. Ties go to the earlier row.
+
+def best_rows(values: NDArray[np.float64], weights: Weights, k: int) -> NDArray[np.int64]:
+    """Return the rows of the k candidates whose weighted sums of features are greatest, best first.
+
+    Values above 1e9 count as 1e9. If there are fewer than k candidates, all rows are returned. Ties
+    go to the earlier row.
+
+    Parameters
+    ----------
+    values
+        The F unscaled features of the C candidates, shape (F, C).
+    weights
+        Pairs of a feature (row of `values`) and its weight, in the order in which they are added.
     """
-    count = len(next(iter(columns.values()))) if columns else 0
-    score = np.zeros(count)
-    for name, weight in weights.items():
-        # infinite times are capped: an order without a due time is never due
-        score -= weight * np.minimum(columns[name], FAR)
-    if count > 4 * k:
-        # the k-th best score limits the rows to sort; ties with it are kept
-        bound = np.partition(score, k - 1)[k - 1]
-        few = np.flatnonzero(score <= bound)
-        return few[np.argsort(score[few], kind="stable")][:k]
-    return np.argsort(score, kind="stable")[:k]
+    return compiled.best_rows(values, weights, k)

@@ -16,7 +16,7 @@ import numpy as np
 import pydantic
 
 from rmfs.config import Model
-from rmfs.control.features import COLUMNS, LIMIT, RANKINGS, SCALES, best_rows, unscaled
+from rmfs.control.features import COLUMNS, LIMIT, SCALES, best_rows, unscaled, weights_of
 from rmfs.control.overview import GLOBAL_FEATURES, overview
 
 if TYPE_CHECKING:
@@ -164,6 +164,7 @@ class Scorer:
         self.kind = kind
         self.candidates = candidates
         names = COLUMNS[kind]
+        self._ranking = weights_of(kind)
         self._scales = np.array([[SCALES[name]] for name in names])
         self._linear = [network.linear.get(name, 0.0) for name in names]
         declining = network.decline
@@ -193,8 +194,7 @@ class Scorer:
         block = unscaled(candidates, self.kind, view)
         if among is not None:
             block = block[:, among]
-        columns = dict(zip(COLUMNS[self.kind], block, strict=True))
-        best = best_rows(columns, RANKINGS[self.kind], self.candidates)
+        best = best_rows(block, self._ranking, self.candidates)
         features = (block[:, best] / self._scales).clip(-LIMIT, LIMIT).T.astype(np.float32)
         whole = overview(view)
         scores = self.scores(features, whole)

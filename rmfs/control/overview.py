@@ -26,7 +26,7 @@ GLOBAL_FEATURES: tuple[Feature, ...] = (
 )
 """Features of the whole warehouse."""
 
-_SCALES = [feature.scale for feature in GLOBAL_FEATURES]
+_ORDERS, _BUNDLES, _UNITS = (GLOBAL_FEATURES[at].scale for at in (1, 2, 4))
 
 
 def overview(view: View) -> NDArray[np.float32]:
@@ -41,14 +41,15 @@ def overview(view: View) -> NDArray[np.float32]:
     inventory, storage = view.inventory, view.storage
     plain = (
         1.0 - view.now_s / view.end_s,
-        len(view.orders),
-        len(view.bundles),
+        len(view.orders) / _ORDERS,
+        len(view.bundles) / _BUNDLES,
         1.0 - taken / slots if slots else 0.0,
-        units / max(len(view.pick_stations), 1),
+        units / max(len(view.pick_stations), 1) / _UNITS,
         len(view.asking) / robots,
         len(view.resting) / robots,
         (len(storage.place_of) - np.count_nonzero(storage.is_stored)) / robots,
         inventory.stored_space / inventory.total_capacity,
     )
-    scaled = zip(plain, _SCALES, strict=True)
-    return np.array([min(max(one / scale, -LIMIT), LIMIT) for one, scale in scaled], np.float32)
+    found = np.array(plain, np.float32)
+    np.minimum(found, LIMIT, out=found)
+    return np.maximum(found, -LIMIT, out=found)

@@ -11,7 +11,9 @@ from rmfs.control.decisions import MovePod, Rest, Store, WorkFor
 from rmfs.world.stations import PickStation
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
 
     from rmfs.control.answers import Columns
     from rmfs.control.view import View
@@ -23,13 +25,94 @@ WORK, STORE, MOVE, REST = range(4)
 _KIND_OF: dict[type, int] = {WorkFor: WORK, Store: STORE, MovePod: MOVE, Rest: REST}
 
 
+FEATURES = ("work", "pick", "store", "move", "rest", "away_s", "units", "robots")
+"""What rates a task: its kind as four numbers, 1 or 0, and columns of `tasks`."""
+
+_OF_OTHERS: dict[int, tuple[float, ...]] = {
+    STORE: (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+    MOVE: (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0),
+    REST: (0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0),
+}
+"""`FEATURES` of the tasks that are not work for a station, by kind."""
+
+
+class TaskCandidates(Candidates):
+    """The possible tasks of some robots.
+
+    Most questions have few rows, and their columns are rarely needed, so these are created only
+    when they are accessed.
+
+    Parameters
+    ----------
+    robots
+        The robots.
+    rows
+        The tasks: position of the robot in `robots`, kind, and station or -1.
+    """
+
+    def __init__(
+        self, view: View, robots: Sequence[Robot], rows: Sequence[tuple[int, int, int]]
+    ) -> None:
+        super().__init__({}, lambda row: _decision(robots[rows[row][0]], *rows[row][1:]))
+        self._view, self._robots, self._rows = view, robots, rows
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def columns(self) -> Columns:
+        """Arrays of shape (C,) by name; `rmfs.control.answers.MEANINGS` gives their meanings."""
+        if not self._columns:
+            self._columns = self._measured()
+        return self._columns
+
+    def _measured(self) -> Columns:
+        view, robots, rows = self._view, self._robots, self._rows
+        values = dict(zip(FEATURES, self.features(), strict=True))
+        columns: Columns = {
+            "robot": np.array([robots[at].index for at, _, _ in rows], np.int64),
+            "kind": np.array([kind for _, kind, _ in rows], np.int64),
+            "station": np.array([station for _, _, station in rows], np.int64),
+            "pick": values["pick"] > 0,
+            "away_s": values["away_s"],
+            "units": values["units"].astype(np.int64),
+            "robots": values["robots"].astype(np.int64),
+        }
+        if view.batteries is not None:
+            columns["level_share"] = view.batteries.shares()[columns["robot"]]
+        return columns
+
+    def without_moves(self) -> list[int]:
+        """Return the rows that do not move an idle pod."""
+        return [row for row, (_, kind, _) in enumerate(self._rows) if kind != MOVE]
+
+    def features(self, rows: Iterable[int] | None = None) -> NDArray[np.float64]:
+        """Return `FEATURES` of some rows (default: all), shape (8, C)."""
+        chosen = self._rows if rows is None else [self._rows[row] for row in rows]
+        if not chosen:
+            return np.empty((len(FEATURES), 0))
+        robots = self._robots
+        table = [
+            _OF_OTHERS[kind] if kind != WORK else self._of_work(robots[at], station)
+            for at, kind, station in chosen
+        ]
+        return np.array(table, np.float64).T
+
+    def _of_work(self, robot: Robot, station: int) -> tuple[float, ...]:
+        target = self._view.stations[station]
+        is_pick = isinstance(target, PickStation)
+        away_s = self._view.travel.one_estimate_s(robot.waypoint, target.waypoint)
+        units = open_work(self._view, station)
+        return 1.0, is_pick, 0.0, 0.0, 0.0, away_s, units, len(target.tasks)
+
+
 def tasks(
     view: View, refused: Sequence[Any] = (), robots: Sequence[Robot] | None = None
-) -> Candidates:
+) -> TaskCandidates:
     """List the possible tasks of robots that need a task or are at rest.
 
     Each row of the candidates is a task. The decision for it (for example, `WorkFor`) is created
-    only when the row is accessed, since of most rows only the columns are needed.
+    only when the row is accessed.
 
     Parameters
     ----------
@@ -44,25 +127,7 @@ def tasks(
     if refused:
         out = {_key(one) for one in refused}
         rows = [(at, kind, to) for at, kind, to in rows if (robots[at].index, kind, to) not in out]
-    columns: Columns = {
-        "robot": np.array([robots[at].index for at, _, _ in rows], np.int64),
-        "kind": np.array([kind for _, kind, _ in rows], np.int64),
-        "station": np.array([station for _, _, station in rows], np.int64),
-        "pick": np.zeros(len(rows), np.bool_),
-        "away_s": np.zeros(len(rows)),
-        "units": np.zeros(len(rows), np.int64),
-        "robots": np.zeros(len(rows), np.int64),
-    }
-    _measure(view, robots, columns, rows)
-
-    if view.batteries is not None:
-        columns["level_share"] = view.batteries.shares()[columns["robot"]]
-
-    def answer(row: int) -> Any:
-        place, kind, station = rows[row]
-        return _decision(robots[place], kind, station)
-
-    return Candidates(columns, answer)
+    return TaskCandidates(view, robots, rows)
 
 
 def has_tasks(view: View) -> bool:
@@ -102,30 +167,14 @@ def _rows(view: View, robots: Sequence[Robot]) -> list[tuple[int, int, int]]:
     return rows
 
 
-def _measure(
-    view: View, robots: Sequence[Robot], columns: Columns, rows: Sequence[tuple[int, int, int]]
-) -> None:
-    """Fill in the attributes of work for stations."""
-    works = [row for row, (_, kind, _) in enumerate(rows) if kind == WORK]
-    if not works:
-        return
-    stations = [view.stations[rows[row][2]] for row in works]
-    here = np.array([robots[rows[row][0]].waypoint for row in works])
-    there = np.array([station.waypoint for station in stations])
-    columns["pick"][works] = [isinstance(station, PickStation) for station in stations]
-    columns["away_s"][works] = view.travel.estimate_s(here, there)
-    columns["units"][works] = [open_work(view, station.index) for station in stations]
-    columns["robots"][works] = [len(station.tasks) for station in stations]
-
-
 def _served(view: View, pod: int) -> list[int]:
     """Find the stations that need something from a pod."""
     inventory = view.inventory
-    skus = [sku for sku in inventory.skus_of(pod) if inventory.available[sku, pod] > 0]
-    picks = np.flatnonzero(view.need[:, skus].any(axis=1)).tolist() if skus else []
-    bundles = np.flatnonzero(view.bundles_waiting[:, pod])
-    first = len(view.pick_stations)
-    return [*picks, *(bundles + first).tolist()]
+    available = inventory.available.item
+    skus = [sku for sku in inventory.skus_of(pod) if available(sku, pod) > 0]
+    picks = [s.index for s in view.pick_stations if not s.requests.lines.keys().isdisjoint(skus)]
+    bundles = [s.index for s in view.replenishment_stations if pod in s.waiting]
+    return picks + bundles
 
 
 def _key(refused: Any) -> tuple[int, int, int]:

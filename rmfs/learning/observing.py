@@ -13,14 +13,15 @@ from rmfs.control.features import (
     RANKINGS,
     SCALES,
     Feature,
-    best_rows,
     features_of,
     unscaled,
+    weights_of,
 )
 from rmfs.control.overview import GLOBAL_FEATURES, overview
 from rmfs.control.problems import Problem
-from rmfs.control.task_candidates import MOVE, has_tasks
+from rmfs.control.task_candidates import TaskCandidates, has_tasks
 from rmfs.errors import InputError
+from rmfs.traffic._core import offered  # the package has one compiled library
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
     from rmfs.simulation.decision import Decision
 
-_NONE = np.empty(0, np.intp)
+_NONE = np.empty(0, np.int64)
 
 
 class Options(NamedTuple):
@@ -51,7 +52,7 @@ class Options(NamedTuple):
     """
 
     decision: Decision
-    rows: NDArray[np.intp]
+    rows: NDArray[np.int64]
     features: NDArray[np.float32]
     mask: NDArray[np.int8]
 
@@ -63,7 +64,7 @@ class Options(NamedTuple):
     @property
     def is_forced(self) -> bool:
         """Whether only one action is possible."""
-        return int(np.count_nonzero(self.mask)) < 2
+        return len(self.rows) + self.mask.item(-1) < 2
 
 
 class Observing:
@@ -118,11 +119,22 @@ class Observing:
             ),
         )
         self._shape = (candidates, len(self.features))
-        self._only_decline = np.zeros(candidates + 1, np.int8)
-        self._only_decline[candidates] = 1
-        self._names = [feature.name for feature in self.features]
-        self._places = {kind: _places(kind, self._names) for kind in self.kinds}
-        self._rankings = {**RANKINGS, **_checked(rankings or {})}
+        self._masks = {
+            (count, may_decline): _mask(count, candidates, may_decline)
+            for count in range(candidates + 1)
+            for may_decline in (False, True)
+        }
+        none = np.zeros(len(self.kinds), np.float32)
+        self._is_kind = {kind: none.copy() for kind in self.kinds}
+        for at, kind in enumerate(self.kinds):
+            self._is_kind[kind][at] = 1.0
+        self._is_kind[""] = none
+        known_rankings = {**RANKINGS, **_checked(rankings or {})}
+        names = [feature.name for feature in self.features]
+        self._ranked = {
+            kind: (weights_of(kind, known_rankings), candidates, *_places(kind, names))
+            for kind in self.kinds
+        }
 
     def options(self, decision: Decision, *, may_move: bool) -> Options:
         """Return the best candidates of a question, their features, and the mask of actions.
@@ -134,43 +146,36 @@ class Observing:
         """
         kind = kind_of(decision)
         if kind == "ta" and not may_move and not has_tasks(decision.view):
-            return Options(decision, _NONE, np.zeros(self._shape, np.float32), self._only_decline)
+            return self._none(decision)
         candidates = decision.candidates
         rows = None  # all
-        if kind == "ta" and not may_move:
-            rows = (candidates.columns["kind"] != MOVE).nonzero()[0]
+        if isinstance(candidates, TaskCandidates) and not may_move:
+            rows = candidates.without_moves()
         count = len(candidates) if rows is None else len(rows)
-        mask = np.zeros(self.k + 1, np.int8)
-        mask[: min(count, self.k)] = 1
-        mask[self.k] = decision.kind != "next station"
-        found = np.zeros(self._shape, np.float32)
         if not count:
-            return Options(decision, _NONE, found, mask)
-        # one row per feature: a few long operations instead of many short ones
-        block = unscaled(candidates, kind, decision.view)
+            return self._none(decision)
+        if isinstance(candidates, TaskCandidates):
+            values = candidates.features(rows)
+        else:
+            values = unscaled(candidates, kind, decision.view)
+        best, features = offered(values, *self._ranked[kind])
         if rows is not None:
-            block = block[:, rows]
-        columns = dict(zip(COLUMNS[kind], block, strict=True))
-        best = best_rows(columns, self._rankings[kind], self.k)
-        block = block[:, best]
-        places, scales = self._places[kind]
-        if len(block):
-            block /= scales
-            np.minimum(block, LIMIT, out=block)
-            np.maximum(block, -LIMIT, out=block)
-            found[: len(best), places] = block.T
-        return Options(decision, best if rows is None else rows[best], found, mask)
+            best = np.array([rows[row] for row in best.tolist()], np.int64)
+        mask = self._masks[min(count, self.k), decision.kind != "next station"]
+        return Options(decision, best, features, mask)
+
+    def _none(self, decision: Decision) -> Options:
+        """Return the options of a question without candidates."""
+        mask = self._masks[0, decision.kind != "next station"]
+        return Options(decision, _NONE, np.zeros(self._shape, np.float32), mask)
 
     def globals_of(self, view: View, decision: Decision | None) -> NDArray[np.float32]:
         """Return the features of the warehouse and then of the question, shape (G,).
 
         Those of the question are a one-hot encoding of its kind, or 0 if there is none.
         """
-        found = np.zeros(len(self.global_features), np.float32)
-        found[: len(GLOBAL_FEATURES)] = overview(view)
-        if decision is not None:
-            found[len(GLOBAL_FEATURES) + self.kinds.index(kind_of(decision))] = 1.0
-        return found
+        kind = "" if decision is None else kind_of(decision)
+        return np.concatenate((overview(view), self._is_kind[kind]))
 
 
 def kind_of(decision: Decision) -> str:
@@ -178,10 +183,25 @@ def kind_of(decision: Decision) -> str:
     return decision.problem.value if decision.kind == "turn" else decision.kind
 
 
-def _places(kind: str, names: Sequence[str]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Return the positions of the features of a kind of question, and their scales, (F, 1)."""
-    places = np.array([names.index(name) for name in COLUMNS[kind]], np.intp)
-    return places, np.array([[SCALES[name]] for name in COLUMNS[kind]])
+def _mask(count: int, k: int, may_decline: bool) -> NDArray[np.int8]:
+    """Return which of k + 1 actions are possible, with so many candidates; not to be changed."""
+    mask = np.zeros(k + 1, np.int8)
+    mask[:count] = 1
+    mask[k] = may_decline
+    mask.flags.writeable = False
+    return mask
+
+
+def _places(
+    kind: str, names: Sequence[str]
+) -> tuple[NDArray[np.float64], NDArray[np.int64], int, float]:
+    """Return how the features of a kind of question enter an observation.
+
+    These are their scales, their columns, the number of all columns, and the clipping limit.
+    """
+    places = np.array([names.index(name) for name in COLUMNS[kind]], np.int64)
+    scales = np.array([SCALES[name] for name in COLUMNS[kind]], np.float64)
+    return scales, places, len(names), LIMIT
 
 
 def _checked(rankings: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str, float]]:

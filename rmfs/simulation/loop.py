@@ -78,6 +78,7 @@ class Loop:
         self.instants = 0
         self._unsettled = self._quiet = False
         self._handlers = _traffic_handlers(dispatch)
+        self._ignored = sum(1 << kind for kind in EventKind if kind not in self._handlers)
 
     @property
     def now_us(self) -> int:
@@ -212,15 +213,13 @@ class Loop:
         """Process the next instant, up to a time."""
         self.instants += 1
         agenda, handlers = self.agenda, self._handlers
-        events = self.traffic.advance(until_us)
+        events = self.traffic.advance(until_us, self._ignored)
         agenda.now_us = now_us = events[0][0] if events else until_us
         self.world.now_s = now_us / 1e6
         if events:
             self._moved_us = now_us
             for _, kind, robot, value in events:
-                handler = handlers[kind]
-                if handler is not None:
-                    handler(robot, value)
+                handlers[kind](robot, value)
         self._quiet = not events
         agenda.run_due()
         self._unsettled = True
@@ -273,13 +272,13 @@ class Loop:
         self._sample_again(number + 1)
 
 
-def _traffic_handlers(dispatch: Dispatch) -> list[Callable[[int, int], None] | None]:
-    """Return the handler of each kind of event; other events matter only inside traffic."""
-    handlers: list[Callable[[int, int], None] | None] = [None] * len(EventKind)
-    handlers[EventKind.DEPARTED] = dispatch.departed
-    handlers[EventKind.ARRIVED] = dispatch.departed
-    handlers[EventKind.LIFT_STARTED] = dispatch.lift_started
-    handlers[EventKind.AT_HEAD] = dispatch.at_head
-    handlers[EventKind.SET_DOWN] = dispatch.set_down
-    handlers[EventKind.IDLE] = dispatch.idle
-    return handlers
+def _traffic_handlers(dispatch: Dispatch) -> dict[int, Callable[[int, int], None]]:
+    """Return the handlers of events, by kind; other events matter only inside traffic."""
+    return {
+        int(EventKind.DEPARTED): dispatch.departed,
+        int(EventKind.ARRIVED): dispatch.departed,
+        int(EventKind.LIFT_STARTED): dispatch.lift_started,
+        int(EventKind.AT_HEAD): dispatch.at_head,
+        int(EventKind.SET_DOWN): dispatch.set_down,
+        int(EventKind.IDLE): dispatch.idle,
+    }

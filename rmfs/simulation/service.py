@@ -150,7 +150,8 @@ class PickService:
         self._busy_until_us = agenda.now_us + transfer_us
         self._robot_until_us = agenda.now_us + pick_us
         agenda.at(self._busy_until_us, self._unit_transferred)
-        if pick_us != transfer_us:
+        if pick_us > transfer_us or (pick_us < transfer_us and not task.can_pick):
+            # while the next unit only waits for the station, there is nothing for the robot to do
             agenda.at(self._robot_until_us, self.go_on)
         events.station_busy(index, now_s, self._busy_until_us / 1e6)
         events.unit_picked(now_s, order, line.sku, task.pod, task.robot, index, pick.late_bound)

@@ -43,6 +43,7 @@ class Traffic(Readings):
     advance
         Function of a time limit in us. It advances to the next time at which there are events, but
         not beyond the limit, and returns these events as tuples with the fields of `TrafficEvent`.
+        A second argument leaves out kinds of events: a bit set, with bit k for `EventKind(k)`.
     command
         Function that gives a robot its program, a list of pairs of a `Step` and its argument.
 
@@ -67,7 +68,7 @@ class Traffic(Readings):
         self._core: Core
         self._options: Options
         # the two calls of the hot path, without a frame in between
-        self.advance: Callable[[int], list[tuple[int, int, int, int]]]
+        self.advance: Callable[..., list[tuple[int, int, int, int]]]
         self.command: Callable[[int, list[tuple[int, int]]], None]
         self.__dict__.update(_of(build(layout, options), options))
 

@@ -165,7 +165,10 @@ class PickTask(StationTask):
     @property
     def can_pick(self) -> bool:
         """Whether any pick is for an order with a slot at the station, not for one in its pool."""
-        return any(pick.line.order.station >= 0 for pick in self.picks)
+        for pick in self.picks:
+            if pick.line.order.station >= 0:
+                return True
+        return False
 
 
 @dataclass(slots=True, eq=False)

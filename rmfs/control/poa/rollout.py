@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs.control.candidates import candidates_for
 from rmfs.control.decisions import AssignOrder
-from rmfs.control.features import RANKINGS, best_rows, numbers
+from rmfs.control.features import best_rows, unscaled, weights_of
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
@@ -62,7 +62,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
         if not len(found):
             return []
         count = self.parameters.candidates
-        rows = best_rows(numbers(found, "poa", self.view), RANKINGS["poa"], count)
+        rows = best_rows(unscaled(found, "poa", self.view), weights_of("poa"), count)
         in_stock = found.columns["in_stock"]
         others = [found[int(row)] for row in rows if in_stock[row]]
         return [one for one in others if one != first][: count - 1]

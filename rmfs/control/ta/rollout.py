@@ -9,7 +9,7 @@ import pydantic
 from rmfs.control import legality
 from rmfs.control.candidates import candidates_for
 from rmfs.control.decisions import BringForBundles, BringForPicks, Park
-from rmfs.control.features import RANKINGS, best_rows, numbers
+from rmfs.control.features import best_rows, unscaled, weights_of
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
 from rmfs.control.rollouts import RolloutParameters, TriesOut, base_rule, question
@@ -115,7 +115,6 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
         found = candidates_for(self.view, asked)
         if not len(found):
             return []
-        rows = best_rows(
-            numbers(found, kind, self.view), RANKINGS[kind], self.parameters.candidates
-        )
+        values = unscaled(found, kind, self.view)
+        rows = best_rows(values, weights_of(kind), self.parameters.candidates)
         return [int(found[int(row)]) for row in rows]

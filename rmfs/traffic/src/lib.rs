@@ -14,6 +14,7 @@ pub mod patience;
 pub mod planner;
 pub mod postpone;
 pub mod random;
+pub mod ranking;
 pub mod reach;
 pub mod record;
 pub mod reservations;

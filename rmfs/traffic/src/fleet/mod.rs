@@ -302,8 +302,14 @@ impl Fleet {
     }
 
     /// Advances to the first time not after `until` at which something happens, or to `until`.
-    pub fn advance(&mut self, until: Us) -> Vec<Event> {
-        while self.outbox.is_empty() {
+    ///
+    /// Events of the kinds in the bit set `ignored` are left out.
+    pub fn advance(&mut self, until: Us, ignored: u32) -> Vec<Event> {
+        loop {
+            self.outbox.retain(|event| ignored >> event.kind as u32 & 1 == 0);
+            if !self.outbox.is_empty() {
+                break;
+            }
             match self.agenda.peek() {
                 Some(&Reverse((time, ..))) if time <= until => self.instant(time),
                 _ => {

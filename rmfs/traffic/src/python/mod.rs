@@ -3,6 +3,7 @@
 mod guard;
 mod motion;
 mod planner;
+mod ranking;
 mod sequences;
 mod tables;
 mod visits;
@@ -228,8 +229,14 @@ impl Core {
         self.check_tape()
     }
 
-    fn advance(&mut self, py: Python<'_>, until: Us) -> PyResult<Vec<(Us, i64, u32, u32)>> {
-        let events = py.detach(|| self.with(|fleet| fleet.advance(until)))?;
+    #[pyo3(signature = (until, ignored=0))]
+    fn advance(
+        &mut self,
+        py: Python<'_>,
+        until: Us,
+        ignored: u32,
+    ) -> PyResult<Vec<(Us, i64, u32, u32)>> {
+        let events = py.detach(|| self.with(|fleet| fleet.advance(until, ignored)))?;
         if let Some(error) = self.fault.lock().ok().and_then(|mut fault| fault.take()) {
             return Err(error);
         }
@@ -574,6 +581,8 @@ fn placed(network: &Network, robots: &[(u32, f64, u8)]) -> Result<Vec<(u32, u8, 
 #[pymodule]
 #[pyo3(name = "_core")]
 mod core_module {
+    #[pymodule_export]
+    use super::ranking::{best_rows, offered};
     #[pymodule_export]
     use super::{Along, Conflict, Core, Motion, Reserved, Search, Sequences, Visits, Way};
 }
