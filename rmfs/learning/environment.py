@@ -145,13 +145,12 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
 
     def action_masks(self) -> NDArray[np.bool_]:
         """Return which actions are possible, shape (actions,); MaskablePPO calls this method."""
-        mask = np.zeros(self.actions, np.bool_)
         if self._options is None:
+            mask = np.zeros(self.actions, np.bool_)
             mask[self.decline] = True
-        else:
-            mask[: self.decline + 1] = self._options.mask
-            mask[self.decline + 1 :] = True
-        return mask
+            return mask
+        possible = self._options.mask.view(np.bool_)
+        return np.append(possible, True) if self._with_rule else possible.copy()
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

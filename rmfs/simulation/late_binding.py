@@ -95,14 +95,13 @@ class LateBinding(Observer):
     def _bind_order(self, order: Order) -> None:
         station = self._world.pick_stations[order.station]
         available = self._world.inventory.available.item
+        carried = [task for task in station.tasks.values() if task.picks and self._is_carried(task)]
+        if not carried:
+            return
         for line in order.lines:
             if not line.open_units:
                 continue
-            tasks = [
-                task
-                for pod, task in station.tasks.items()
-                if task.picks and available(line.sku, pod) and self._is_carried(task)
-            ]
+            tasks = [task for task in carried if available(line.sku, task.pod)]
             if len(tasks) > 1:
                 self._sort_by_arrival(tasks, station)
             for task in tasks:

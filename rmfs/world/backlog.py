@@ -152,9 +152,13 @@ class OrderBacklog:
         stock
             Units per SKU, shape (K,).
         """
-        short = stock[self.sku] < self.units
-        short &= self.units > 0
-        return np.logical_not(np.asarray(short.any(axis=1)))
+        units = self.units
+        short = stock.take(self.sku) < units
+        short &= units > 0
+        found = short[:, 0].copy()
+        for column in range(1, short.shape[1]):  # faster than `any` over short rows
+            found |= short[:, column]
+        return np.logical_not(found, out=found)
 
     def _make_room(self, rows: int, lines: int) -> None:
         old_rows, old_lines = self._sku.shape

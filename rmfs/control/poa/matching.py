@@ -32,4 +32,7 @@ def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
 
     `line_matches` explains which units count.
     """
-    return np.stack([np.einsum("bl->b", line_matches(view, station.index)) for station in stations])
+    found = np.empty((len(stations), len(view.orders.at_row)), np.int32)
+    for row, station in zip(found, stations, strict=True):
+        row[:] = np.einsum("bl->b", line_matches(view, station.index))
+    return found

@@ -5,12 +5,13 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+
 from rmfs.control.decisions import AssignOrder
 from rmfs.control.poa.filling import FastLaneParameters, Filling
 from rmfs.control.poa.ties import TieBreaker, first_row
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from rmfs.world.stations import PickStation
@@ -41,10 +42,11 @@ class BestPair(Filling[Q]):
         """Choose the best pair of a servable order and a station."""
         orders = self.view.orders
         servable = orders.servable(self.view.inventory.free_stock)
-        if not servable.any():
+        if not np.count_nonzero(servable):
             return None
         scores = self.scores(stations)
         scores[:, ~servable] = -1
-        rows = (scores.max(axis=0) == scores.max()).nonzero()[0]
+        best = np.maximum.reduce(scores, axis=0)  # a method's wrapper would take longer
+        rows = (best == np.maximum.reduce(best)).nonzero()[0]
         row = first_row(rows, orders, self.parameters.tie_breaker, self.draw)
         return AssignOrder(orders.at_row[row], stations[int(scores[:, row].argmax())].index)

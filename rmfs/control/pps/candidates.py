@@ -221,7 +221,8 @@ def pick_candidates(
         return PickCandidates(view, robot, station, none, skus, np.empty((0, 0), np.int32))
     have = view.inventory.available[skus]
     assigned = len(station.requests.lines) if requests == "assigned-and-completable" else len(skus)
-    useful = have[:assigned].max(axis=0, initial=0) > 0
+    # with requests of queued orders only, no row is left, and no pod is useful yet
+    useful = np.maximum.reduce(have[:assigned], axis=0, initial=0) > 0
     if requests == "assigned-and-completable":
         for order in queued:
             useful |= _covered(view, order)
