@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from rmfs.control.problems import Problem
 
 
-@dataclass(frozen=True)
-class Question:
+class Question(NamedTuple):
     """A question to a program outside the simulation.
 
     Attributes

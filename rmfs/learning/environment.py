@@ -232,10 +232,10 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
 
     def _go_on(self) -> None:
         """Simulate to the next question with more than one possible action."""
-        run, observing = self.run, self.observing
+        run, observing, may_move = self.run, self.observing, self._may_move
         while (decision := run.step()) is not None:
             self._advice = None
-            options = observing.options(decision, may_move=self._may_move)
+            options = observing.options(decision, may_move=may_move)
             if not options.is_forced:
                 break
             if self._with_rule and not len(options.rows):
@@ -286,7 +286,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         if options is None:
             found = np.zeros((observing.k, len(observing.features)), np.float32)
         else:
-            found = options.features
+            found = options.features if len(options.rows) else options.features.copy()
         if self._flat:
             return np.concatenate([whole, found.ravel()])
         return {

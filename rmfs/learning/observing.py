@@ -118,7 +118,8 @@ class Observing:
                 for kind in self.kinds
             ),
         )
-        self._shape = (candidates, len(self.features))
+        self._nothing = np.zeros((candidates, len(self.features)), np.float32)
+        self._nothing.flags.writeable = False
         self._masks = {
             (count, may_decline): _mask(count, candidates, may_decline)
             for count in range(candidates + 1)
@@ -167,7 +168,7 @@ class Observing:
     def _none(self, decision: Decision) -> Options:
         """Return the options of a question without candidates."""
         mask = self._masks[0, decision.kind != "next station"]
-        return Options(decision, _NONE, np.zeros(self._shape, np.float32), mask)
+        return Options(decision, _NONE, self._nothing, mask)
 
     def globals_of(self, view: View, decision: Decision | None) -> NDArray[np.float32]:
         """Return the features of the warehouse and then of the question, shape (G,).
@@ -180,7 +181,7 @@ class Observing:
 
 def kind_of(decision: Decision) -> str:
     """Return `decision.kind`, or the name of the problem if that kind is `turn`."""
-    return decision.problem.value if decision.kind == "turn" else decision.kind
+    return decision.problem if decision.kind == "turn" else decision.kind
 
 
 def _mask(count: int, k: int, may_decline: bool) -> NDArray[np.int8]:

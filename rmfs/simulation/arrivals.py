@@ -84,7 +84,11 @@ class ArrivalProcess:
             self._add_order(order)
         for bundle in self._bundles.due(now_us, self):
             self._add_bundle(bundle)
-        self._wake_at(min(self._orders.next_us, self._bundles.next_us))
+        self._wake_at(self._next_us())
+
+    def _next_us(self) -> int:
+        orders_us, bundles_us = self._orders.next_us, self._bundles.next_us
+        return orders_us if orders_us < bundles_us else bundles_us
 
     def redraw(self) -> None:
         """Redraw the next arrivals after random streams were replaced; see `Intake.redraw`."""
@@ -94,7 +98,7 @@ class ArrivalProcess:
             self._woken_us = -1
         self._orders.redraw(now_us)
         self._bundles.redraw(now_us)
-        self._wake_at(min(self._orders.next_us, self._bundles.next_us))
+        self._wake_at(self._next_us())
 
     def _add_order(self, arrival: OrderArrival) -> None:
         world = self._world

@@ -301,7 +301,9 @@ class Deciding:
             based on an answer are counted in its `Call`.
         """
         now_s, statistics = self._world.now_s, self.statistics[problem]
-        statistics.record(wall_ns, count, now_s)
+        statistics.wall_ns.append(wall_ns)
+        if count:
+            statistics.count(count, now_s)
         self._events.decision(statistics.problem, now_s, wall_ns / 1e9, by_rule)
 
 

@@ -70,9 +70,11 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
 class Awaits(BaseException):
     """A question must be answered outside the simulation before the decision phase can go on."""
 
-    def __init__(self, question: Question) -> None:
-        super().__init__(question)
-        self.question = question
+    @property
+    def question(self) -> Question:
+        """The question."""
+        question: Question = self.args[0]
+        return question
 
 
 @dataclass

@@ -47,11 +47,9 @@ class DecisionStatistics:
         """Return a quantile (`share`: 0 to 1) of the wall time of calls in s; nan without calls."""
         return float(np.quantile(self.wall_ns, share)) / 1e9 if self.wall_ns else float("nan")
 
-    def record(self, wall_ns: int, decisions: int, now_s: float) -> None:
-        """Add one call, with its wall time in ns and its number of decisions."""
-        if decisions:
-            self.last_s = now_s
-        self.wall_ns.append(wall_ns)
+    def count(self, decisions: int, now_s: float) -> None:
+        """Count the decisions of a call."""
+        self.last_s = now_s
         self.decisions += decisions
 
     def reset(self) -> None:

@@ -63,9 +63,15 @@ class FastLane:
         self._hopeful: set[int] = set()
         self._newest = -1
 
-    def decide(self) -> Iterator[AssignOrder]:
-        """Yield assignments while the pod at a station with a free slot can complete an order."""
-        for index in self._promising():
+    def decide(self, stations: list[int] | None = None) -> Iterator[AssignOrder]:
+        """Yield assignments while the pod at a station with a free slot can complete an order.
+
+        Parameters
+        ----------
+        stations
+            The stations to consider. Default: those that `promising` returns.
+        """
+        for index in self.promising() if stations is None else stations:
             station, fitting = self._view.pick_stations[index], self._visits[index].fitting
             pod = self._view.robots[station.robot].pod
             while fitting and station.free_slots > 0:
@@ -75,7 +81,7 @@ class FastLane:
                     break
                 yield AssignOrder(order, index)
 
-    def _promising(self) -> list[int]:
+    def promising(self) -> list[int]:
         """Return stations with a free slot whose pod may complete an order, ascending.
 
         Only stations with news are checked, unless there are new orders.
@@ -91,9 +97,16 @@ class FastLane:
         new: dict[int, list[Order]] = {}
         if newest == self._newest and not changed and not self._hopeful:
             return []
+        visits, stations = self._visits, self._view.pick_stations
         for index in serving if newest != self._newest else changed & serving:
-            self._look(index, newest, new)
+            visit = visits[index]
+            if visit.newest < newest or visit.number != stations[index].visits or visit.fitting:
+                self._look(index, newest, new)
+            else:
+                self._hopeful.discard(index)
         self._newest = newest
+        if not self._hopeful:
+            return []
         return sorted(i for i in self._hopeful if i in serving and self._visits[i].fitting)
 
     def _look(self, index: int, newest: int, new: dict[int, list[Order]]) -> None:

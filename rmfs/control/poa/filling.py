@@ -69,9 +69,10 @@ class Filling(PickOrderAssignment[P]):
 
     def decide(self) -> Iterator[AssignOrder]:
         """Yield assignments of orders for the fast lane, then of other orders."""
-        if self._lane is not None:
-            yield from self._lane.decide()
-        while len(self.view.orders):
+        if self._lane is not None and (promising := self._lane.promising()):
+            yield from self._lane.decide(promising)
+        backlog = self.view.orders.orders
+        while backlog:
             stations = self._stations_to_fill()
             chosen = self.next_assignment(stations) if stations else None
             if chosen is None:

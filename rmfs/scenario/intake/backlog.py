@@ -27,13 +27,14 @@ class Rest:
 
     def __init__(self, openings: Openings) -> None:
         self._openings = openings
+        self._always_open = openings.always
         self._blocked_us = 0
         self.until_us = NEVER_US
 
     def ends(self, now_us: int) -> bool:
         """Return whether the process may continue at a time, and update `until_us`."""
         until_us = self._blocked_us
-        if not self._openings.always:
+        if not self._always_open:
             until_us = self._openings.open_from_us(max(now_us, until_us))
         if until_us > now_us:
             self.until_us = until_us
