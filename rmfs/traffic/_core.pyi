@@ -7,6 +7,18 @@ from numpy.typing import NDArray
 def best_rows(
     values: NDArray[np.float64], weights: Sequence[tuple[int, float]], k: int
 ) -> NDArray[np.int64]: ...
+def servable(
+    sku: NDArray[np.int64], units: NDArray[np.int32], stock: NDArray[np.int64]
+) -> NDArray[np.bool_]: ...
+def matches(
+    sku: NDArray[np.int64],
+    units: NDArray[np.int32],
+    inbound: NDArray[np.int32],
+    need: NDArray[np.int32],
+) -> NDArray[np.int32]: ...
+def completed(
+    have: NDArray[np.int32], orders: Sequence[Sequence[tuple[int, int]]]
+) -> NDArray[np.bool_]: ...
 def offered(
     values: NDArray[np.float64],
     weights: Sequence[tuple[int, float]],

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.traffic import _core as compiled  # the package has one compiled library
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -152,13 +154,7 @@ class OrderBacklog:
         stock
             Units per SKU, shape (K,).
         """
-        units = self.units
-        short = stock.take(self.sku) < units
-        short &= units > 0
-        found = short[:, 0].copy()
-        for column in range(1, short.shape[1]):  # faster than `any` over short rows
-            found |= short[:, column]
-        return np.logical_not(found, out=found)
+        return compiled.servable(self.sku, self.units, stock)
 
     def _make_room(self, rows: int, lines: int) -> None:
         old_rows, old_lines = self._sku.shape

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.traffic import _core as compiled  # the package has one compiled library
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -13,26 +15,15 @@ if TYPE_CHECKING:
     from rmfs.world.stations import PickStation
 
 
-def line_matches(view: View, station: int) -> NDArray[np.int32]:
-    """Return how many units of each backlog order line can come from inbound pods, shape (B, L).
+def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
+    """Return how many units of the B backlog orders the pods of S stations can supply, (S, B).
 
-    Inbound pods are at the station or on their way there. They can supply what they have
+    The pods of a station are at the station or on their way there. They can supply what they have
     available in addition to the units that orders at the station still need from pods.
     """
-    orders = view.orders
-    by_sku: NDArray[np.int32] = view.inventory.inbound[station] - view.need[station]
-    spare = by_sku.take(orders.sku)
-    np.minimum(spare, orders.units, out=spare)
-    np.maximum(spare, 0, out=spare)
-    return spare
-
-
-def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
-    """Return how many units of each order can come from the inbound pods of each station, (S, B).
-
-    `line_matches` explains which units count.
-    """
-    found = np.empty((len(stations), len(view.orders.at_row)), np.int32)
+    sku, units = view.orders.sku, view.orders.units
+    found = np.empty((len(stations), len(sku)), np.int32)
     for row, station in zip(found, stations, strict=True):
-        row[:] = np.einsum("bl->b", line_matches(view, station.index))
+        inbound, need = view.inventory.inbound[station.index], view.need[station.index]
+        row[:] = compiled.matches(sku, units, inbound, need)
     return found

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from rmfs.traffic import _core as compiled  # the package has one compiled library
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -184,19 +186,13 @@ class PickCandidates(Candidates):
 
     def _find_completed(self) -> Completed:
         row_of = {sku: row for row, sku in enumerate(self.skus)}
-        left = self.have.copy()
         assigned = [order for order in self.pick_station.orders.values() if order.open_units]
         orders = [*assigned, *self.queued]
-        flags = np.empty((len(orders), len(self.pods)), np.bool_)
-        for covered, order in zip(flags, orders, strict=True):
-            wanted = [(row_of[ln.sku], ln.open_units) for ln in order.lines if ln.open_units]
-            row, count = wanted[0]
-            np.greater_equal(left[row], count, out=covered)
-            for row, count in wanted[1:]:
-                covered &= left[row] >= count
-            for row, count in wanted:
-                left[row] -= covered * np.int32(count)
-        return Completed(orders, len(assigned), flags)
+        wanted = [
+            [(row_of[line.sku], line.open_units) for line in order.lines if line.open_units]
+            for order in orders
+        ]
+        return Completed(orders, len(assigned), compiled.completed(self.have, wanted))
 
 
 def pick_candidates(

@@ -9,6 +9,7 @@ pub mod guidance;
 pub mod heat;
 pub mod kinematics;
 pub mod log;
+pub mod matching;
 pub mod network;
 pub mod patience;
 pub mod planner;

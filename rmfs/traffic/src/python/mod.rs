@@ -1,6 +1,7 @@
 //! The Python interface of the crate: arrays in, arrays and events out.
 
 mod guard;
+mod matching;
 mod motion;
 mod planner;
 mod ranking;
@@ -581,6 +582,8 @@ fn placed(network: &Network, robots: &[(u32, f64, u8)]) -> Result<Vec<(u32, u8, 
 #[pymodule]
 #[pyo3(name = "_core")]
 mod core_module {
+    #[pymodule_export]
+    use super::matching::{completed, matches, servable};
     #[pymodule_export]
     use super::ranking::{best_rows, offered};
     #[pymodule_export]
