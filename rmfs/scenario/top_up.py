@@ -71,7 +71,7 @@ class OrderTopUp(_TopUp):
     def __init__(self, config: BacklogDemand, capacity: float) -> None:
         enough = Hysteresis(config.resume_above_share, config.pause_below_share, on=True)
         super().__init__(capacity, config.retry_s, enough)
-        self._config = config
+        self._by_stock, self._most = config.pause_by_stock, config.orders
 
     def wants(self, time_s: float, waiting: int, stored: float) -> bool:
         """Return whether an order should be generated now.
@@ -88,8 +88,8 @@ class OrderTopUp(_TopUp):
         stored
             Space taken by the stored units of all pods, in space units.
         """
-        enough = self._switch.update(stored / self._capacity) or not self._config.pause_by_stock
-        return enough and waiting < self._config.orders and time_s >= self.blocked_until_s
+        enough = self._switch.update(stored / self._capacity) or not self._by_stock
+        return enough and waiting < self._most and time_s >= self.blocked_until_s
 
 
 class BundleTopUp(_TopUp):
@@ -109,7 +109,8 @@ class BundleTopUp(_TopUp):
     def __init__(self, config: BacklogReplenishment, capacity: float) -> None:
         full = Hysteresis(config.pause_above_share, config.resume_below_share, on=False)
         super().__init__(capacity, config.retry_s, full)
-        self._config = config
+        self._by_stock, self._most = config.pause_by_stock, config.bundles
+        self._load_limit_share = config.load_limit_share
 
     def wants(self, time_s: float, waiting: int, load: float) -> bool:
         """Return whether a bundle should be generated now.
@@ -125,8 +126,8 @@ class BundleTopUp(_TopUp):
         load
             Current load (see the class).
         """
-        full = self._switch.update(load / self._capacity) and self._config.pause_by_stock
-        return not full and waiting < self._config.bundles and time_s >= self.blocked_until_s
+        full = self._switch.update(load / self._capacity) and self._by_stock
+        return not full and waiting < self._most and time_s >= self.blocked_until_s
 
     def accepts(self, load: float, space: float) -> bool:
         """Return whether the load limit admits a bundle; if not, the caller has to call `failed`.
@@ -138,4 +139,4 @@ class BundleTopUp(_TopUp):
         space
             Space units of the bundle.
         """
-        return load + space <= self._config.load_limit_share * self._capacity
+        return load + space <= self._load_limit_share * self._capacity
