@@ -165,10 +165,7 @@ class PickTask(StationTask):
     @property
     def can_pick(self) -> bool:
         """Whether any pick is for an order with a slot at the station, not for one in its pool."""
-        for pick in self.picks:
-            if pick.line.order.station >= 0:
-                return True
-        return False
+        return any(pick.line.order.station >= 0 for pick in self.picks)
 
 
 @dataclass(slots=True, eq=False)

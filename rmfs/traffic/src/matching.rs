@@ -12,11 +12,7 @@ pub fn is_servable(lines: impl Iterator<Item = (usize, i32)>, stock: &[i64]) -> 
 /// Returns how many units of an order pods can supply beyond what a station still needs from them.
 ///
 /// `inbound` and `need` are units by SKU.
-pub fn match_of(
-    lines: impl Iterator<Item = (usize, i32)>,
-    inbound: &[i32],
-    need: &[i32],
-) -> i32 {
+pub fn match_of(lines: impl Iterator<Item = (usize, i32)>, inbound: &[i32], need: &[i32]) -> i32 {
     lines.map(|(sku, units)| (inbound[sku] - need[sku]).min(units).max(0)).sum()
 }
 
