@@ -120,3 +120,18 @@ class TestMetrics:
             assert travel.distances_to(4, metric) is travel.distances_to(4, metric)
             assert travel.distances_from(4, metric) is travel.distances_from(4, metric)
         assert travel.distances_from(4, "path") is not travel.distances_to(4, "path")
+
+
+@pytest.mark.parametrize("tiers", [1, 2])
+def test_one_estimate_is_that_of_many(tiers) -> None:
+    plan = small_layout(places=6, pods=1, robots=3)
+    if tiers == 2:
+        tier = np.zeros(len(plan.x_m), np.int16)
+        tier[:3] = 1
+        plan = replace(plan, tier=tier, tiers=[*plan.tiers, plan.tiers[0]])
+    travel = Travel(plan, FreeTraffic(plan))
+    assert travel.tiers == tiers
+    everywhere = np.arange(len(plan.x_m))
+    for waypoint in everywhere.tolist():
+        one_by_one = [travel.one_estimate_s(waypoint, other) for other in everywhere.tolist()]
+        assert one_by_one == travel.estimate_s(waypoint, everywhere).tolist()

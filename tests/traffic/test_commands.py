@@ -40,6 +40,22 @@ def test_a_whole_task(layout):
     ]
 
 
+def test_kinds_of_events_can_be_left_out(layout):
+    place, ignored = int(layout.pod_waypoint[7]), 1 << EventKind.LIFTED | 1 << EventKind.ARRIVED
+    program = [(Step.DRIVE, place), (Step.LIFT, 7), (Step.STATION, 1)]
+    everything, some = Traffic(layout), Traffic(layout)
+    for traffic in (everything, some):
+        traffic.command(0, program)
+    expected = [one for one in events_until(everything, 400) if not ignored >> one[1] & 1]
+    found = []
+    while some.now_us < 400e6:
+        events = some.advance(400_000_000, ignored)
+        assert events or some.now_us == 400_000_000
+        found += events
+    assert found == expected
+    assert [kind for _, kind, _, _ in found].count(EventKind.LIFT_STARTED) == 1
+
+
 def test_lifting_takes_its_time(layout):
     traffic = Traffic(layout)
     place = int(layout.pod_waypoint[3])
