@@ -157,6 +157,7 @@ def test_no_rule_is_left_out() -> None:
     tested |= {("repositioning", name) for name in ("none", "cache", "cache-drop-off", "utility")}
     tested |= {("mm", "none"), ("mm", "scheduled")}
     tested |= {("ta", "rollout")}  # in test_lookahead.py
+    tested |= {(problem, "network") for problem in ("pps", "psa", "ta")}  # test_network_rules.py
     for problem in (Problem.PPS, Problem.PSA, Problem.TA, Problem.SA, Problem.MM):
         for name in registry.built_in(problem):
             default = DEFAULTS[problem] == name
