@@ -4,7 +4,8 @@ A linear rule chooses the candidate with the greatest weighted sum of features; 
 PPO scores candidates in its place; look-ahead tries out decisions in copies of the run (docs:
 learning). A regime is a site with a kind of demand and a number of robots. The study has four
 regimes at the small site (layout `small`) or, with `--sites`, one at the default site and one at
-the large site (layouts `default` and `large`). The seeds were not used in training. Every arm is
+the large site (layouts `default` and `large`). With `--ppo`, the networks take the place of
+look-ahead in the four regimes at the small site. The seeds were not used in training. Every arm is
 compared with the default rules and with the best plain rule of its regime. In regimes with a
 backlog, the measure is the number of units picked; in those with orders that arrive over time, it
 is the number of orders completed late, plus those overdue at the end. p values are corrected by
@@ -185,9 +186,14 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("learning", __doc__)
     options.add_argument("--sites", action="store_true", help="the default and the large site")
+    options.add_argument("--ppo", action="store_true", help="networks trained by PPO")
     given = options.parse_args(arguments)
+    if given.sites and given.ppo:
+        options.error("--sites and --ppo exclude each other")
     if given.sites:
         given.design = "learning-sites"
+    elif given.ppo:
+        given.design = "learning-ppo"
     study: Study = done(given)
     frame = with_goals(study.frame)
     table = compared(frame, bounds(study, frame))

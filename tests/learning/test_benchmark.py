@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -19,6 +20,8 @@ from rmfs.experiments.papers.learning import (
     most_units,
     with_goals,
 )
+from rmfs.experiments.results import load
+from rmfs.experiments.running import run
 
 AT_BEST = {"backlog, tight": 220.0, "arrivals, tight": 4.0}
 RULES = "default rules (best rule)"
@@ -165,10 +168,30 @@ def test_the_mean_bound_counts_orders_due_in_the_measured_time() -> None:
     assert fewest_late_mean(orders, 2, 10.0) == pytest.approx(1.5)
 
 
-@pytest.mark.parametrize(("design", "arms"), [("learning", 36), ("learning-sites", 20)])
+@pytest.mark.parametrize(
+    ("design", "arms"), [("learning", 36), ("learning-sites", 20), ("learning-ppo", 40)]
+)
 def test_designs_can_be_planned_with_seeds_that_no_training_has_seen(
     design: str, arms: int
 ) -> None:
     made = plan(design)
     assert len(made.arms) == arms
     assert min(made.design.seeds) > 1000
+    assert max(made.design.seeds) < 1_000_000  # where the seeds of `rmfs learn-network` begin
+
+
+@pytest.mark.parametrize("regime", ["backlog, tight", "arrivals, tight"])
+def test_the_arms_of_networks_run(regime: str, tmp_path: Path) -> None:
+    wanted = {"PPO, units", "PPO, due times"}
+    without = [
+        arm.name
+        for arm in plan("learning-ppo").arms
+        if arm.levels["policy"] not in wanted or arm.levels["regime"] != regime
+    ]
+    short = {"scenario.duration_s": 200.0, "scenario.warmup_s": 0.0}
+    made = plan("learning-ppo", replications=1, base=short, without=without)
+    assert not run(made, tmp_path, processes=1).failed
+    frame = load(tmp_path)
+    assert set(frame["policy"]) == wanted
+    assert sorted(frame["controllers"]) == ["network-due", "network-units"]
+    assert (frame["units_picked"] > 0).all()
