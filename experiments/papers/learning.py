@@ -5,12 +5,12 @@ PPO scores candidates in its place; look-ahead tries out decisions in copies of 
 learning). A regime is a site with a kind of demand and a number of robots. The study has four
 regimes at the small site (layout `small`) or, with `--sites`, one at the default site and one at
 the large site (layouts `default` and `large`). With `--ppo`, the networks take the place of
-look-ahead in the four regimes at the small site. The seeds were not used in training. Every arm is
-compared with the default rules and with the best plain rule of its regime. In regimes with a
-backlog, the measure is the number of units picked; in those with orders that arrive over time, it
-is the number of orders completed late, plus those overdue at the end. p values are corrected by
-Holm's method over all arms of a regime. A bound that holds for all controllers, whatever they know,
-shows how much room there is for improvement.
+look-ahead. The seeds were not used in training. Every arm is compared with the default rules and
+with the best plain rule of its regime. In regimes with a backlog, the measure is the number of
+units picked; in those with orders that arrive over time, it is the number of orders completed late,
+plus those overdue at the end. p values are corrected by Holm's method over all arms of a regime. A
+bound that holds for all controllers, whatever they know, shows how much room there is for
+improvement.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from rmfs.experiments.statistics import against, interval
 from rmfs.experiments.tables import HALF, Table, rows_frame
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     import pandas as pd
 
@@ -51,12 +51,18 @@ def is_rule(policy: str) -> bool:
     return not any(word in policy for word in NOT_RULES)
 
 
-def best_rule(runs: pd.DataFrame, goal: str) -> str:
+def is_linear(policy: str) -> bool:
+    """Whether an arm has linear rules."""
+    return policy.startswith("linear")
+
+
+def best_rule(runs: pd.DataFrame, goal: str, among: Callable[[str], bool] = is_rule) -> str:
     """Return the plain rule with the best mean in a regime: most units, or fewest late orders.
 
-    It is selected from the same runs that are then compared, which favours it.
+    It is selected from the same runs that are then compared, which favours it. With `among`, the
+    best of the arms for which this function returns true is returned.
     """
-    rules = runs[runs[POLICY].map(is_rule)]
+    rules = runs[runs[POLICY].map(among)]
     means = rules.groupby(POLICY, sort=False)[goal].mean()
     return str(means.idxmin() if goal == LATE else means.idxmax())
 
@@ -99,8 +105,8 @@ def fewest_late_mean(orders: pd.DataFrame, stations: int, unit_s: float) -> floa
 def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
     """Return means, and gains over the default rules and the best plain rule, by regime and arm.
 
-    A gain is positive if more units are picked or, where late orders are the measure, fewer orders
-    are late.
+    If there are networks trained by PPO, gains over the best linear rule are added. A gain is
+    positive if more units are picked or, where late orders are the measure, fewer orders are late.
 
     Parameters
     ----------
@@ -109,15 +115,18 @@ def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
     at_best
         Bound of each regime: an upper bound on units picked, or a lower bound on late orders.
     """
+    networks = frame[POLICY].str.startswith("PPO").any()
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for name, runs in frame.groupby(REGIME, sort=False):
         regime = str(name)
         goal = goal_of(regime)
         sign = -1.0 if goal == LATE else 1.0
         best = best_rule(runs, goal)
+        baselines = {"default": START, "best rule": best}
+        if networks:
+            baselines["best linear rule"] = best_rule(runs, goal, is_linear)
         beside = {
-            label: against(runs, goal, baseline, by=POLICY)
-            for label, baseline in (("default", START), ("best rule", best))
+            label: against(runs, goal, baseline, by=POLICY) for label, baseline in baselines.items()
         }
         room = sign * (at_best[regime] - float(runs[runs[POLICY] == START][goal].mean()))
         for policy in runs[POLICY].unique():
@@ -186,14 +195,12 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study and publish it."""
     options = parser("learning", __doc__)
     options.add_argument("--sites", action="store_true", help="the default and the large site")
-    options.add_argument("--ppo", action="store_true", help="networks trained by PPO")
+    options.add_argument(
+        "--ppo", action="store_true", help="with networks trained by PPO, but without look-ahead"
+    )
     given = options.parse_args(arguments)
-    if given.sites and given.ppo:
-        options.error("--sites and --ppo exclude each other")
-    if given.sites:
-        given.design = "learning-sites"
-    elif given.ppo:
-        given.design = "learning-ppo"
+    if given.sites or given.ppo:
+        given.design = f"learning{'-ppo' if given.ppo else ''}{'-sites' if given.sites else ''}"
     study: Study = done(given)
     frame = with_goals(study.frame)
     table = compared(frame, bounds(study, frame))

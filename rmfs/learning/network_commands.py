@@ -52,6 +52,13 @@ def learn_network(
     ] = 16,
     gamma: Annotated[float, typer.Option(help="Discount factor per decision.")] = 0.99,
     learning_rate: Annotated[float, typer.Option(help="Initial learning rate.")] = 1e-3,
+    average: Annotated[
+        bool,
+        typer.Option(
+            "--average",
+            help="Subtract from each reward the mean reward of the time since the last decision.",
+        ),
+    ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the weights and of PPO.")] = 1,
     set_: SetOption = None,
 ) -> None:
@@ -83,11 +90,13 @@ def learn_network(
         gamma=gamma,
         learning_rate=learning_rate,
         checks=checks,
+        average=average,
         seed=seed,
         told=print,
     )
     told = (
-        f"Trained by rmfs learn-network on {layout}, {scenario}: reward {reward}, {steps} "
+        f"Trained by rmfs learn-network on {layout}, {scenario}: reward {reward}"
+        f"{', less its mean,' if average else ','} {steps} "
         f"decisions, seed {seed}; objective {objective}, seeds {seeds}."
     )
     write_text(out, to_toml(named(found, out.stem, told)))

@@ -30,6 +30,7 @@ def train_network(
     gamma: float = 0.99,
     learning_rate: float = 1e-3,
     checks: int = 10,
+    average: bool = False,
     seed: int = 1,
     told: Callable[[str], None] | None = None,
 ) -> Trained:
@@ -58,6 +59,10 @@ def train_network(
         Initial learning rate; it falls linearly to 0.
     checks
         Number of times that the rules are simulated during training.
+    average
+        Whether the mean reward per second, times the time since the last decision, is subtracted
+        from each reward. Since PPO discounts by decision, it would otherwise maximise the reward
+        per decision rather than per second.
     seed
         Seed of the initial weights and of PPO.
     told
@@ -92,6 +97,7 @@ def train_network(
         gamma=gamma,
         learning_rate=learning_rate,
         checks=checks,
+        average=average,
         seed=seed,
         told=told,
     )

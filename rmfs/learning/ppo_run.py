@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import exp
 from time import perf_counter, process_time
 from typing import TYPE_CHECKING, Any
 
@@ -42,6 +43,7 @@ def learned(
     gamma: float,
     learning_rate: float,
     checks: int,
+    average: bool,
     seed: int,
     told: Callable[[str], None] | None,
 ) -> Trained:
@@ -50,6 +52,8 @@ def learned(
     first = first_networks(task)
     settings = network_rules(task, first, candidates)
     given = {key: value for key, value in task.set.items() if not key.startswith("controllers.")}
+
+    rate = Rate() if average else None
 
     def made(number: int) -> Training:
         return Training(
@@ -63,6 +67,7 @@ def learned(
             observation="flat",
             footprint=False,
             number=number,
+            rate=rate,
         )
 
     several = DummyVecEnv([lambda number=number: made(number) for number in range(ENVIRONMENTS)])
@@ -92,6 +97,25 @@ def learned(
     return Trained(watched.best, watched.value, watched.start_value, history)
 
 
+class Rate:
+    """The mean reward per second of recent decisions in all environments."""
+
+    MEMORY_S = 20_000.0
+    """Simulated time after which a reward has lost most of its weight in the mean."""
+
+    def __init__(self) -> None:
+        self._reward, self._time_s = 0.0, 0.0
+
+    def less_mean(self, reward: float, elapsed_s: float) -> float:
+        """Return a reward minus the mean reward of the time over which it was collected."""
+        kept = exp(-elapsed_s / self.MEMORY_S)
+        self._reward = kept * self._reward + reward
+        self._time_s = kept * self._time_s + elapsed_s
+        if self._time_s == 0:
+            return 0.0
+        return reward - elapsed_s * self._reward / self._time_s
+
+
 class Training(DecisionEnv):
     """An environment whose episodes have the training seeds, which are dealt to all environments.
 
@@ -99,11 +123,21 @@ class Training(DecisionEnv):
     ----------
     number
         Number of the environment, from 0.
+    rate
+        The mean reward per second, which is subtracted from rewards; None to leave them unchanged.
     """
 
-    def __init__(self, *arguments: Any, number: int, **named: Any) -> None:
+    def __init__(self, *arguments: Any, number: int, rate: Rate | None, **named: Any) -> None:
         super().__init__(*arguments, **named)
         self._next_seed = FIRST_SEED + number
+        self._rate = rate
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Make a decision and simulate up to the next one."""
+        seen, reward, ended, over, info = super().step(action)
+        if self._rate is not None:
+            reward = self._rate.less_mean(reward, info["elapsed_s"])
+        return seen, reward, ended, over, info
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

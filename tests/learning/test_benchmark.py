@@ -80,6 +80,17 @@ def test_the_share_of_the_room_is_that_between_the_rules_and_the_bound() -> None
         assert 0 < tried["share of the room", ""] < 1
 
 
+def test_networks_are_compared_with_the_best_linear_rule() -> None:
+    arms = {"linear, units": 1.0, "linear, due times": 4.0, "PPO, units": 7.0}
+    frame = compared(results(**arms), AT_BEST).frame
+    for regime in ("backlog, tight", "arrivals, tight"):
+        gains = frame.loc[f"{regime}, PPO, units"]["gain on best linear rule", "mean"]
+        assert gains == pytest.approx(3.0, abs=1.5)
+        assert np.isnan(frame.loc[f"{regime}, linear, due times"]["gain on best linear rule", "p"])
+    without = compared(results(**{"linear, units": 1.0}), AT_BEST).frame
+    assert "gain on best linear rule" not in without.columns.get_level_values(0)
+
+
 def test_orders_that_are_never_done_are_late_too() -> None:
     made = results()
     assert (made[LATE] == made["orders_late"] + 10).all()

@@ -187,6 +187,20 @@ def test_the_policy_is_the_network() -> None:
                 assert found[-1] == pytest.approx(declining, abs=1e-4)
 
 
+def test_the_mean_reward_is_subtracted_by_time() -> None:
+    pytest.importorskip("sb3_contrib")
+    from rmfs.learning.ppo_run import Rate
+
+    rate = Rate()
+    draw = np.random.default_rng(1)
+    times_s = draw.exponential(2.0, 20_000)
+    left = [rate.less_mean(0.5 * time_s + draw.normal(), time_s) for time_s in times_s]
+    assert abs(np.mean(left[5_000:])) < 0.05
+    assert Rate().less_mean(3.0, 0.0) == 0.0
+    # more reward in the same time is above the mean
+    assert rate.less_mean(3.0, 1.0) > 2.0 > rate.less_mean(3.0, 10.0)
+
+
 def test_training_repeats_and_writes_a_file_that_runs(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
