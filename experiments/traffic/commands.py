@@ -213,6 +213,12 @@ def guide_command(
     controllers: Annotated[
         str, typer.Option(help="Name of a shipped set of controllers, or a file.")
     ] = "default",
+    trips: Annotated[
+        bool,
+        typer.Option(
+            "--trips", help="Maximise the trips per hour of random trips, without orders, instead."
+        ),
+    ] = False,
     objective: Annotated[
         str, typer.Option(help="Objective to maximise, as footprint columns: COLUMN=WEIGHT,...")
     ] = "trip_delay_mean_s=-1",
@@ -239,21 +245,21 @@ def guide_command(
     jobs: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
     set_: SetOption = None,
 ) -> None:
-    """Optimise guidance, the extra costs of a layout's edges, over simulated runs with orders."""
-    from rmfs.experiments.traffic import guide
+    """Optimise guidance, the extra costs of a layout's edges, over simulated runs."""
+    from rmfs.experiments.traffic import guide, guide_tasks
 
     if out.suffix.lower() != ".json":
         raise InputError(f"--out {out}: must be a .json file")
     if generations == 0 and weights is None:
         raise InputError("--generations 0: needs --weights")
-    task = guide.Task(
-        layout,
-        scenario,
-        controllers,
-        _numbers("--objective", objective),
-        [_seed(one) for one in seeds.split(",")],
-        {".".join(path): value for path, value in map(parse_override, set_ or [])},
-    )
+    given = {".".join(path): value for path, value in map(parse_override, set_ or [])}
+    numbers = [_seed(one) for one in seeds.split(",")]
+    task: guide_tasks.Task
+    if trips:
+        task = guide_tasks.Trips(layout, numbers, given)
+    else:
+        goal = _numbers("--objective", objective)
+        task = guide_tasks.Orders(layout, numbers, given, scenario, controllers, goal)
     start = None if weights is None else _numbers("--weights", weights)
     found = guide.optimise(
         task,

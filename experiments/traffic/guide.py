@@ -8,12 +8,10 @@ from __future__ import annotations
 
 import tempfile
 import warnings
-from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from functools import partial
-from math import isfinite
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,22 +19,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from rmfs import layout as layouts
 from rmfs.errors import InputError
 from rmfs.experiments.traffic.guide_features import FEATURES, features
-from rmfs.measure.dictionary import names
 from rmfs.random import Stream, generator
-from rmfs.simulation.idle_rules import IdleRuleWarning
-from rmfs.simulation.run import simulate
 from rmfs.traffic.guidance import MOST_EXTRA_S, write_guidance
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
+    from rmfs.experiments.traffic.guide_tasks import Task
     from rmfs.layout.model import Layout
-    from rmfs.simulation.result import Run
 
 LARGEST = {
     "against": 3.0,
@@ -50,67 +44,6 @@ LARGEST = {
 
 FINALISTS = 3
 """Number of vectors, besides the mean of the last distribution, that are tried on other seeds."""
-
-KEY = "controllers.pp.guidance"
-
-
-@dataclass(frozen=True)
-class Task:
-    """What is simulated, and the objective.
-
-    Attributes
-    ----------
-    layout, scenario, controllers
-        Inputs of the simulation.
-    objective
-        Weights by column of the footprint; the weighted sum of the columns is maximised.
-    seeds
-        Seeds of the runs with which weights are evaluated.
-    set
-        Further parameters by dotted key, as for `rmfs.simulate`.
-
-    Raises
-    ------
-    InputError
-        If a column does not exist, there is no seed, or `set` contains guidance.
-    """
-
-    layout: str
-    scenario: str
-    controllers: str = "default"
-    objective: Mapping[str, float] = field(default_factory=lambda: {"trip_delay_mean_s": -1.0})
-    seeds: Sequence[int] = (1001, 1002, 1003)
-    set: Mapping[str, Any] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        for column in self.objective:
-            if column not in names("footprint"):
-                raise InputError(f"objective {column}: is not a column of the footprint")
-        if not self.objective or not self.seeds:
-            raise InputError("guidance needs at least one objective and one seed")
-        if KEY in self.set:
-            raise InputError(f"{KEY}: is what is searched for")
-
-    def load(self) -> Layout:
-        """Return the layout."""
-        own = [(key.split(".")[1:], v) for key, v in self.set.items() if key.startswith("layout.")]
-        return layouts.load(self.layout, own)
-
-    def run(self, seed: int, guidance: Path | None = None) -> Run:
-        """Simulate one run, with the guidance in a file or without any."""
-        given = dict(self.set) if guidance is None else {**self.set, KEY: str(guidance)}
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", IdleRuleWarning)
-            return simulate(self.layout, self.scenario, self.controllers, seed=seed, set=given)
-
-    def worth(self, run: Run) -> float:
-        """Return the objective of a run; a value that is not finite counts as 0."""
-        values = [float(run.footprint[name]) * weight for name, weight in self.objective.items()]
-        return sum(value if isfinite(value) else 0.0 for value in values)
-
-    def other_seeds(self) -> list[int]:
-        """Return twice as many other seeds, which follow the greatest."""
-        return [max(self.seeds) + 1 + number for number in range(2 * len(self.seeds))]
 
 
 @dataclass(frozen=True)
@@ -145,7 +78,7 @@ class Found:
             self.extra_s,
             description=f"Weights of features in s: {told or 'none'}.",
             origin={
-                "task": asdict(task),
+                "task": {"kind": type(task).__name__, **asdict(task)},
                 "weights": self.weights,
                 "value": self.value,
                 "base_value": self.base_value,
@@ -194,12 +127,8 @@ def optimise(
         )
     first = _first(start)
     layout = task.load()
-    usual = [task.run(seed) for seed in task.seeds]
-    table = features(
-        layout,
-        pd.concat([run.table("edges") for run in usual]),
-        pd.concat([run.table("heat") for run in usual]),
-    )
+    edges, heat = zip(*map(task.counted, task.seeds), strict=True)
+    table = features(layout, pd.concat(edges), pd.concat(heat))
     columns = np.stack([table[name] for name in FEATURES])
     pool = nullcontext() if jobs == 1 else ProcessPoolExecutor(jobs, get_context("spawn"))
     with pool as executor, tempfile.TemporaryDirectory() as folder:
@@ -300,4 +229,4 @@ def _values(
 
 
 def _one(task: Task, guidance: Path, seed: int) -> float:
-    return task.worth(task.run(seed, guidance))
+    return task.value(guidance, seed)

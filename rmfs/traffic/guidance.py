@@ -66,8 +66,9 @@ def read_guidance(path: Path, layout: Layout) -> GuidedEdges:
         If the file cannot be read, is invalid, belongs to another layout, or names an edge twice
         or one that does not exist.
     """
+    content = read_bounded(path)
     try:
-        table = json.loads(read_bounded(path))
+        table = json.loads(content)
     except (ValueError, RecursionError) as error:
         raise InputError(f"{path}: not valid JSON: {error!s:.200}") from None
     if not isinstance(table, dict):

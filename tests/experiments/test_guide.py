@@ -13,13 +13,14 @@ import pytest
 from rmfs import layout as layouts
 from rmfs.cli import main
 from rmfs.errors import InputError
-from rmfs.experiments.traffic.guide import LARGEST, Task, optimise
+from rmfs.experiments.traffic.guide import LARGEST, optimise
 from rmfs.experiments.traffic.guide_features import FEATURES, features
+from rmfs.experiments.traffic.guide_tasks import Orders, Trips
 from rmfs.layout.graph import edge_sources
 from rmfs.traffic.guidance import read_guidance
 
 KEYS = {"scenario.duration_s": 200.0, "layout.robots": 8}
-TASK = Task("small", "small", seeds=(11,), set=KEYS)
+TASK = Orders("small", (11,), KEYS, "small")
 
 
 def edges(rows: list[tuple[int, int, int]]) -> pd.DataFrame:
@@ -78,8 +79,19 @@ def test_the_number_of_processes_does_not_matter() -> None:
     assert optimise(TASK, **some).weights == optimise(TASK, jobs=2, **some).weights
 
 
+def test_guidance_for_random_trips() -> None:
+    task = Trips("small", (5,), {"layout.robots": 8}, warmup_s=60.0, duration_s=120.0)
+    edges, heat = task.counted(5)
+    assert edges["passages"].sum() > 100
+    assert len(heat) == task.load().waypoints
+    found = optimise(task, start={"storage": 5.0}, generations=0)
+    usual = [task.run(seed).trips_per_h for seed in task.other_seeds()]
+    assert found.base_value == pytest.approx(np.mean(usual))
+    assert found.value != found.base_value
+
+
 def test_seeds_that_decide_are_others() -> None:
-    task = Task("small", "small", seeds=(3, 9))
+    task = Trips("small", seeds=(3, 9))
     assert task.other_seeds() == [10, 11, 12, 13]
 
 
@@ -99,11 +111,13 @@ def test_wrong_searches_are_refused(given: dict[str, Any], told: str) -> None:
 
 def test_wrong_tasks_are_refused() -> None:
     with pytest.raises(InputError, match="objective speed"):
-        Task("small", "small", objective={"speed": 1.0})
+        Orders("small", objective={"speed": 1.0})
     with pytest.raises(InputError, match="at least one"):
-        Task("small", "small", seeds=())
+        Trips("small", seeds=())
     with pytest.raises(InputError, match="is what is searched for"):
-        Task("small", "small", set={"controllers.pp.guidance": "g.json"})
+        Orders("small", set={"controllers.pp.guidance": "g.json"})
+    with pytest.raises(InputError, match=r"scenario\.duration_s: random trips have only"):
+        Trips("small", set={"scenario.duration_s": 9.0})
 
 
 def test_the_command_end_to_end(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -133,6 +147,7 @@ def test_the_command_end_to_end(tmp_path: Path, capsys: pytest.CaptureFixture[st
         ["--objective", "nothing=1"],
         ["--out", "g.txt"],
         ["--set", "controllers.pp.guidance=g.json"],
+        ["--trips", "--set", "scenario.duration_s=60"],
     ],
 )
 def test_wrong_options_are_refused(

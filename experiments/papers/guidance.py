@@ -1,0 +1,124 @@
+"""The gain of guidance: extra costs of edges, optimised for a layout, by which paths are preferred.
+
+The design `guidance` runs sites with quick stations at normal and at high density of robots,
+without guidance and with several files of guidance. The study publishes the changes of units per
+hour, of the delay per trip and of the distance per unit, paired by seed, with p values corrected by
+Holm's method. It also publishes the share of driving time that is delay, and the share of their
+time for which robots have no task: guidance can at most remove the delay, and shorter trips do not
+help where robots have nothing to do. In random trips without orders, with the same layouts, robots
+and guidance, every robot always has a trip: the study publishes the change of trips per hour.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+import pandas as pd
+
+from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.statistics import interval, paired
+from rmfs.experiments.statistics.paired import holm
+from rmfs.experiments.tables import HALF, Table, rows_frame
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+CASE = "case"
+NOTHING = "none"
+COLUMNS = (
+    "units_per_h",
+    "trip_delay_mean_s",
+    "trip_time_mean_s",
+    "distance_per_unit_m",
+    "robot_idle_share",
+)
+
+Rows = dict[str, dict[tuple[str, str], float]]
+
+
+def sites(frame: pd.DataFrame) -> Iterator[tuple[str, dict[str, pd.DataFrame]]]:
+    """Yield each site with its measures: frames with a row per seed and a column per guidance.
+
+    Parameters
+    ----------
+    frame
+        Runs with `case` ("site: guidance"), `replication` and the columns of the study.
+    """
+    parts = frame[CASE].str.partition(": ")
+    for site, runs in frame.assign(site=parts[0], guidance=parts[2]).groupby("site", sort=False):
+        yield (
+            str(site),
+            {
+                column: runs.pivot_table(
+                    index="replication", columns="guidance", values=column, sort=False
+                )
+                for column in COLUMNS
+            },
+        )
+
+
+def levels(frame: pd.DataFrame) -> Table:
+    """Return units per hour and delay without guidance, by site."""
+    rows: Rows = {}
+    for site, of in sites(frame):
+        delay_s, trip_s = of["trip_delay_mean_s"][NOTHING], of["trip_time_mean_s"][NOTHING]
+        row: dict[tuple[str, str], float] = {}
+        for name, values in (
+            ("units per hour", of["units_per_h"][NOTHING]),
+            ("delay per trip, s", delay_s),
+            ("delay, % of driving time", 100 * delay_s / trip_s),
+            ("robots without a task, %", 100 * of["robot_idle_share"][NOTHING]),
+        ):
+            found = interval(values)
+            row |= {(name, "mean"): found.mean, (name, HALF): found.half_width}
+        rows[site] = row
+    decimals = dict.fromkeys(next(iter(rows.values())), 2)
+    decimals |= {("units per hour", part): 0 for part in ("mean", HALF)}
+    caption = "Without guidance: means over seeds with 95% confidence intervals (Student's t)."
+    return Table(rows_frame(rows, "site"), decimals, caption)
+
+
+def gains(frame: pd.DataFrame) -> Table:
+    """Return the changes by guidance, paired by seed, by site and guidance."""
+    rows: Rows = {}
+    p_units, p_delay = ("p of units", "Holm"), ("p of delay", "Holm")
+    for site, of in sites(frame):
+        units, metres = of["units_per_h"], of["distance_per_unit_m"]
+        delay_s = of["trip_delay_mean_s"]
+        for arm in map(str, units.columns):
+            if arm == NOTHING:
+                continue
+            row: dict[tuple[str, str], float] = {}
+            for name, values in (
+                ("units per hour, %", 100 * (units[arm] / units[NOTHING] - 1)),
+                ("delay per trip, s", delay_s[arm] - delay_s[NOTHING]),
+                ("metres per unit, %", 100 * (metres[arm] / metres[NOTHING] - 1)),
+            ):
+                found = interval(values)
+                row |= {(name, "mean"): found.mean, (name, HALF): found.half_width}
+            row[p_units] = float(paired(units[arm], units[NOTHING])["p"])
+            row[p_delay] = float(paired(delay_s[arm], delay_s[NOTHING])["p"])
+            rows[f"{site}, {arm}"] = row
+    for key in (p_units, p_delay):
+        corrected = holm(pd.Series({name: row[key] for name, row in rows.items()}))
+        for name, row in rows.items():
+            row[key] = float(corrected[name])
+    decimals = dict.fromkeys(next(iter(rows.values())), 2) | {p_units: 3, p_delay: 3}
+    caption = (
+        "Changes compared with the same site without guidance, paired by seed, with 95% confidence "
+        "intervals (Student's t); p values of the paired t test, corrected for the comparisons in "
+        "all rows by Holm's method, separately for units and delay."
+    )
+    return Table(rows_frame(rows, "site and guidance"), decimals, caption)
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the study and publish it."""
+    study = done(parser("guidance", __doc__).parse_args(arguments))
+    study.publish(levels(study.frame), "guidance", COLUMNS)
+    study.publish(gains(study.frame), "guidance-gains", COLUMNS)
+
+
+if __name__ == "__main__":
+    sys.exit(command(main))
