@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pandas as pd
 import pytest
 
 from rmfs import layout as layouts
 from rmfs.experiments.design.planning import plan
-from rmfs.experiments.papers.guidance import gains, levels
+from rmfs.experiments.papers.guidance import gains, levels, trip_gains
 from rmfs.traffic.guidance import read_guidance
 
 
@@ -54,6 +56,19 @@ def test_gains_are_paired_and_corrected() -> None:
     assert frame["p of delay", "Holm"].iloc[1] == pytest.approx(1.0)
 
 
+def test_trips_are_paired_and_corrected() -> None:
+    frame = runs().rename(columns={"units_per_h": "trips_per_h"}).assign(labels_per_plan=7.0)
+    table = trip_gains(frame).frame
+    guided, usual = "hall, 8 robots, optimised", "hall, 8 robots, none"
+    assert table.loc[usual, ("trips per hour", "mean")] == 110.0
+    assert table.loc[guided, ("trips, %", "mean")] == pytest.approx(10.0)
+    assert pd.isna(table.loc[usual, ("trips, %", "mean")])
+    # t = 11 * sqrt(3) with 2 degrees of freedom: p = 0.00274, doubled by Holm
+    assert table.loc[guided, ("p of trips", "Holm")] == pytest.approx(0.00549, abs=1e-5)
+    assert table.loc["street, 9 robots, lanes", ("p of trips", "Holm")] == pytest.approx(1.0)
+    assert set(table["labels per plan", "mean"]) == {7.0}
+
+
 def test_the_design_pairs_every_site_with_a_run_without_guidance() -> None:
     made = plan("guidance")
     cases = [arm.name.removeprefix("case=") for arm in made.arms]
@@ -61,14 +76,8 @@ def test_the_design_pairs_every_site_with_a_run_without_guidance() -> None:
     assert {f"{site}: none" for site in sites} <= set(cases)
     assert len(sites) >= 4
     for arm in made.arms:
-        files = [value for path, value in arm.overrides if path[-1] == "guidance"]
+        files = [Path(value) for path, value in arm.overrides if path[-1] == "guidance"]
         assert bool(files) != arm.name.endswith(": none")
         own = [(path[1:], value) for path, value in arm.overrides if path[0] == "layout"]
         layout = layouts.load(arm.inputs["layout"], own)
-        assert all(read_guidance(file, layout) for file in map(_path, files))
-
-
-def _path(text: str) -> object:
-    from pathlib import Path
-
-    return Path(text)
+        assert all(read_guidance(file, layout) for file in files)
