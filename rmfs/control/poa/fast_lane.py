@@ -94,16 +94,11 @@ class FastLane:
                 serving.add(index)
             else:
                 serving.discard(index)
-        new: dict[int, list[Order]] = {}
         if newest == self._newest and not changed and not self._hopeful:
             return []
-        visits, stations = self._visits, self._view.pick_stations
+        new: dict[int, list[Order]] = {}
         for index in serving if newest != self._newest else changed & serving:
-            visit = visits[index]
-            if visit.newest < newest or visit.number != stations[index].visits or visit.fitting:
-                self._look(index, newest, new)
-            else:
-                self._hopeful.discard(index)
+            self._look(index, newest, new)
         self._newest = newest
         if not self._hopeful:
             return []
@@ -117,16 +112,16 @@ class FastLane:
         new
             Orders newer than a given index, where already looked up.
         """
-        station, visit = self._view.pick_stations[index], self._visits[index]
-        pod = self._view.robots[station.robot].pod
+        view, visit = self._view, self._visits[index]
+        station = view.pick_stations[index]
         if visit.number != station.visits:
             visit.begin(station.visits, newest)
-            self._look_at_all(visit, pod)
+            self._look_at_all(visit, view.robots[station.robot].pod)
         elif visit.newest < newest:
             orders = new.get(visit.newest)
             if orders is None:
-                orders = new[visit.newest] = self._view.orders.after(visit.newest)
-            self._look_at_new(visit, pod, orders)
+                orders = new[visit.newest] = view.orders.after(visit.newest)
+            self._look_at_new(visit, view.robots[station.robot].pod, orders)
             visit.newest = newest
         if visit.fitting:
             self._hopeful.add(index)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from rmfs.control.base import NoParameters
+from rmfs.control.base import Controller, NoParameters
 from rmfs.control.repositioning import Move, Repositioning
 
 if TYPE_CHECKING:
@@ -15,6 +15,7 @@ class NoMoves(Repositioning[NoParameters]):
     """Never moves a pod."""
 
     never = True
+    next_event_s = Controller.next_event_s  # there is no pause that could end
 
     def move(self, robot: Robot) -> Move | None:
         """Return None: no move."""
