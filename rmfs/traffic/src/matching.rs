@@ -13,7 +13,8 @@ pub fn is_servable(lines: impl Iterator<Item = (usize, i32)>, stock: &[i64]) -> 
 ///
 /// `inbound` and `need` are units by SKU.
 pub fn match_of(lines: impl Iterator<Item = (usize, i32)>, inbound: &[i32], need: &[i32]) -> i32 {
-    lines.map(|(sku, units)| (inbound[sku] - need[sku]).min(units).max(0)).sum()
+    let wanted = lines.filter(|&(_, units)| units > 0);
+    wanted.map(|(sku, units)| (inbound[sku] - need[sku]).clamp(0, units)).sum()
 }
 
 /// Finds which orders a pod completes, one after another.

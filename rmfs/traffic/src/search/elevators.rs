@@ -10,7 +10,7 @@ use crate::units::{FOREVER, Us, floor_us};
 
 use super::Search;
 
-impl Search<'_> {
+impl<const GUIDED: bool> Search<'_, GUIDED> {
     /// No way from the start's island to the goal's takes less: that of the best ride, over
     /// everything the elevators are reserved for. 0 if the goal is on the same island.
     pub(super) fn elevator_bound(&self) -> Us {

@@ -176,7 +176,10 @@ impl Pathfinder {
         weight: Us,
         labels: u64,
     ) -> Outcome {
-        Search::new(self, network, table, query, weight).run(labels)
+        match query.guidance {
+            Some(_) => Search::<true>::new(self, network, table, query, weight).run(labels),
+            None => Search::<false>::new(self, network, table, query, weight).run(labels),
+        }
     }
 
     /// Time of the quickest way without other robots between the ends of the way just searched for,
@@ -189,23 +192,27 @@ impl Pathfinder {
 impl Pathfinder {
     /// The least time plus extra cost without other robots of the way just aimed at.
     pub fn least_cost(&self, network: &Network, query: &Query) -> Us {
-        Us::from(self.guide_of(query).to_go(network, query.start, query.heading))
+        let guide = match query.guidance {
+            Some(_) => self.guide::<true>(),
+            None => &self.guide,
+        };
+        Us::from(guide.to_go(network, query.start, query.heading))
     }
 
-    /// The search for unhindered times, or for costs where the query has guidance.
-    fn guide_of(&self, query: &Query) -> &Backward {
-        let guided = self.guided.as_deref().filter(|_| query.guidance.is_some());
+    /// The search for unhindered times or, if `GUIDED`, for costs with guidance.
+    fn guide<const GUIDED: bool>(&self) -> &Backward {
+        let guided = if GUIDED { self.guided.as_deref() } else { None };
         guided.unwrap_or(&self.guide)
     }
 
-    fn guide_of_mut(&mut self, query: &Query) -> &mut Backward {
-        let guided = self.guided.as_deref_mut().filter(|_| query.guidance.is_some());
+    fn guide_mut<const GUIDED: bool>(&mut self) -> &mut Backward {
+        let guided = if GUIDED { self.guided.as_deref_mut() } else { None };
         guided.unwrap_or(&mut self.guide)
     }
 }
 
-/// One search.
-struct Search<'a> {
+/// One search; `GUIDED`: the query has guidance.
+struct Search<'a, const GUIDED: bool> {
     memory: &'a mut Pathfinder,
     network: &'a Network,
     table: &'a Table,
@@ -221,7 +228,7 @@ struct Search<'a> {
     elevator_free: Us,
 }
 
-impl<'a> Search<'a> {
+impl<'a, const GUIDED: bool> Search<'a, GUIDED> {
     fn new(
         memory: &'a mut Pathfinder,
         network: &'a Network,
@@ -368,33 +375,32 @@ impl<'a> Search<'a> {
         }
         let entry = match self.query.times {
             Some(times) => times[self.network.index(node, heading)],
-            None => self.memory.guide_of(self.query).to_go(self.network, node, heading),
+            None => self.memory.guide::<GUIDED>().to_go(self.network, node, heading),
         };
         time(entry)
     }
 
     /// Lower bound of the time alone.
     fn time_to_go(&self, node: u32, heading: u8) -> Option<Us> {
-        match self.query.guidance {
-            Some(_) => time(self.memory.guide.to_go(self.network, node, heading)),
-            None => self.to_go(node, heading),
+        if GUIDED {
+            return time(self.memory.guide.to_go(self.network, node, heading));
         }
+        self.to_go(node, heading)
     }
 
     /// Whether no way over a state, reached at `arrival`, arrives in time; `to_go` is what
     /// [`Search::to_go`] says of it.
     fn is_too_late(&self, (node, heading): (u32, u8), arrival: Us, to_go: Us) -> bool {
-        let left = match self.query.guidance {
-            Some(_) if self.latest < FOREVER => self.time_to_go(node, heading).unwrap_or(FOREVER),
-            Some(_) => return false,
-            None => to_go,
-        };
+        if GUIDED && self.latest == FOREVER {
+            return false;
+        }
+        let left = if GUIDED { self.time_to_go(node, heading).unwrap_or(FOREVER) } else { to_go };
         arrival + left > self.latest
     }
 
     /// The extra cost of driving from a waypoint to the next in a direction.
     fn extra(&self, node: u32, heading: u8) -> Us {
-        let guidance = self.query.guidance;
+        let guidance = self.query.guidance.filter(|_| GUIDED);
         guidance.map_or(0, |guidance| Us::from(guidance[self.network.index(node, heading)]))
     }
 
@@ -404,7 +410,7 @@ impl<'a> Search<'a> {
         if self.query.goal == NONE || self.query.times.is_some() {
             return 0;
         }
-        Us::from(self.memory.guide_of(self.query).straight_to_goal(self.network, node))
+        Us::from(self.memory.guide::<GUIDED>().straight_to_goal(self.network, node))
     }
 
     /// Total time over a label: the time at which it is reached plus a (weighted) bound of the
@@ -427,10 +433,10 @@ impl<'a> Search<'a> {
         if self.query.goal == NONE || self.query.times.is_some() {
             return None;
         }
-        while self.memory.guide_of(self.query).reach() < self.memory.guided_to
-            && !self.memory.guide_of(self.query).knows(self.network, label.node, label.heading)
+        while self.memory.guide::<GUIDED>().reach() < self.memory.guided_to
+            && !self.memory.guide::<GUIDED>().knows(self.network, label.node, label.heading)
         {
-            let guide = self.memory.guide_of_mut(self.query);
+            let guide = self.memory.guide_mut::<GUIDED>();
             let reach = guide.reach().saturating_add(GUIDE_STEP);
             guide.advance(self.network, self.query.model, reach);
             let to_go = self.to_go(label.node, label.heading);

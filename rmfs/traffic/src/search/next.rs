@@ -24,7 +24,20 @@ impl Pathfinder {
         query: &Query,
         slack: Us,
     ) -> Vec<Stop> {
-        let mut search = Search::new(self, network, table, query, 4);
+        match query.guidance {
+            Some(_) => self.stops::<true>(network, table, query, slack),
+            None => self.stops::<false>(network, table, query, slack),
+        }
+    }
+
+    fn stops<const GUIDED: bool>(
+        &mut self,
+        network: &Network,
+        table: &Table,
+        query: &Query,
+        slack: Us,
+    ) -> Vec<Stop> {
+        let mut search = Search::<GUIDED>::new(self, network, table, query, 4);
         let here = network.resource[query.start as usize];
         let free = table.gap_at(here, query.ready).filter(|gap| gap.1 > query.ready);
         let to_go = search.to_go(query.start, query.heading);

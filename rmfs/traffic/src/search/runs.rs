@@ -5,7 +5,7 @@ use crate::units::{FOREVER, Us, ceil_us, floor_us};
 
 use super::{Label, Search};
 
-impl Search<'_> {
+impl<const GUIDED: bool> Search<'_, GUIDED> {
     /// Offers the useful stops of a straight run in one direction whose total time lies between
     /// what was scanned before and `upto`. Returns the least total time beyond, or `beyond` if that
     /// is less.
