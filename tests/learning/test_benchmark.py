@@ -180,7 +180,8 @@ def test_the_mean_bound_counts_orders_due_in_the_measured_time() -> None:
 
 
 @pytest.mark.parametrize(
-    ("design", "arms"), [("learning", 36), ("learning-sites", 20), ("learning-ppo", 40)]
+    ("design", "arms"),
+    [("learning", 36), ("learning-sites", 20), ("learning-ppo", 40), ("learning-ppo-sites", 20)],
 )
 def test_designs_can_be_planned_with_seeds_that_no_training_has_seen(
     design: str, arms: int
