@@ -200,26 +200,44 @@ impl Backward {
 
     /// Continues the search until every state with a total time below `limit` is known.
     pub fn advance(&mut self, network: &Network, model: &Model, limit: u32) {
+        if self.guidance.is_some() {
+            self.advance_to::<true>(network, model, limit);
+        } else {
+            self.advance_to::<false>(network, model, limit);
+        }
+    }
+
+    fn advance_to<const GUIDED: bool>(&mut self, network: &Network, model: &Model, limit: u32) {
         while let Some((cost, state)) = self.queue.pop(limit) {
             look_up();
             let (index, headings) = ((state / ENTRIES) as u32, self.headings as u32);
             let (node, heading) = (index / headings, (index % headings) as u8);
             if state % ENTRIES == ROLLING {
-                self.roll_back(network, model, node, heading, cost);
+                self.roll_back::<GUIDED>(network, model, node, heading, cost);
             } else {
-                self.come_from(network, model, node, heading, cost);
+                self.come_from::<GUIDED>(network, model, node, heading, cost);
             }
         }
     }
 
     /// A run that has reached top speed started at this waypoint or before it.
-    fn roll_back(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
+    fn roll_back<const GUIDED: bool>(
+        &mut self,
+        network: &Network,
+        model: &Model,
+        node: u32,
+        heading: u8,
+        cost: u32,
+    ) {
         self.start_here(network, model, node, heading, cost);
         for &(from, length) in network.behind(node, heading) {
             if !self.passable(network, from, node) {
                 continue;
             }
-            let cost = dearer(cost + model.roll(length), self.extra(network, from, heading));
+            let mut cost = cost + model.roll(length);
+            if GUIDED {
+                cost = dearer(cost, self.extra(network, from, heading));
+            }
             if self.loaded && network.storage[from as usize] {
                 self.start_here(network, model, from, heading, cost);
             } else {
@@ -229,7 +247,14 @@ impl Backward {
     }
 
     /// The robot stops here: short runs that end so, the first long one, and rides.
-    fn come_from(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
+    fn come_from<const GUIDED: bool>(
+        &mut self,
+        network: &Network,
+        model: &Model,
+        node: u32,
+        heading: u8,
+        cost: u32,
+    ) {
         if self.loaded && network.storage[node as usize] && node != self.goal {
             return;
         }
@@ -241,8 +266,12 @@ impl Backward {
                     continue;
                 }
                 let total = total + length;
-                let extra = extra.saturating_add(self.extra(network, from, heading));
-                let started = dearer(cost + model.run(total), extra);
+                let mut extra = extra;
+                let mut started = cost + model.run(total);
+                if GUIDED {
+                    extra = u32::saturating_add(extra, self.extra(network, from, heading));
+                    started = dearer(started, extra);
+                }
                 let only_start = self.loaded && network.storage[from as usize];
                 if total >= model.full_speed && !only_start {
                     self.offer(network, from, heading, ROLLING, started);
