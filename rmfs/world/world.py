@@ -102,7 +102,8 @@ class World(OrderOperations):
         self.pick_stations[station].tasks[pod] = task
         self.inventory.begin_inbound(pod, station)
         requests = self.pick_stations[station].requests
-        for sku in [sku for sku in requests.lines if self.inventory.available[sku, pod]]:
+        available = self.inventory.available.item
+        for sku in [sku for sku in requests.lines if available(sku, pod)]:
             self.extend_pick(task, sku, late_bound=False)
         return task
 
