@@ -130,15 +130,16 @@ def tasks(
     return TaskCandidates(view, robots, rows)
 
 
-def has_tasks(view: View) -> bool:
-    """Return whether there is more for TA to decide than which idle pods to move.
+def lacks_tasks(view: View) -> bool:
+    """Return whether TA has at most to decide which idle pods to move.
 
-    This is so if a robot needs a task, or if one at rest could work for a station or store its pod.
+    This is so if no robot needs a task, and none at rest could work for a station or store its pod.
     """
     if view.asking:
-        return True
-    busy = any(station.has_open_work for station in view.stations)
-    return any(busy or robot.pod >= 0 for robot in view.resting.values())
+        return False
+    if any(station.has_open_work for station in view.stations):
+        return not view.resting
+    return all(robot.pod < 0 for robot in view.resting.values())
 
 
 def open_work(view: View, station: int) -> int:

@@ -202,8 +202,8 @@ class Travel:
 
         The shape is (n,), or (m, n) if `waypoint` is an array of shape (m, 1).
         """
-        distance: NDArray[np.float64] = np.abs(self._x[others] - self._x[waypoint])
-        distance += np.abs(self._y[others] - self._y[waypoint])
+        distance = _apart(self._x, waypoint, others)
+        distance += _apart(self._y, waypoint, others)
         if self.tiers > 1:
             distance += self._other_tier_m * (self.tier[others] != self.tier[waypoint])
         return distance
@@ -262,3 +262,15 @@ class Travel:
         """
         counted = self._times.heat()
         return counted["visits"], counted["waiting_s"]
+
+
+def _apart(
+    along: NDArray[np.float64], waypoint: int | _Waypoints, others: _Waypoints
+) -> NDArray[np.float64]:
+    """Return the absolute difference between coordinates of waypoints, shape (n,) or (m, n)."""
+    if isinstance(waypoint, np.ndarray):
+        found: NDArray[np.float64] = along[others] - along[waypoint]
+    else:  # in place, for the many questions about one robot and few waypoints
+        found = along.take(others)
+        found -= along.item(waypoint)
+    return np.abs(found, out=found)

@@ -10,6 +10,7 @@ from gymnasium import spaces
 
 from rmfs.control.features import LIMIT
 from rmfs.control.problems import Problem
+from rmfs.control.task_candidates import lacks_tasks
 from rmfs.errors import InputError
 from rmfs.learning.episode import Episodes
 from rmfs.learning.observing import Observing, Options, is_same
@@ -149,7 +150,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
             mask = np.zeros(self.actions, np.bool_)
             mask[self.decline] = True
             return mask
-        possible = self._options.mask.view(np.bool_)
+        possible = self._options.mask
         return np.append(possible, True) if self._with_rule else possible.copy()
 
     def reset(
@@ -161,7 +162,10 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
             seed = int(self.np_random.integers(LARGEST_SEED))
         self._run = self.episodes.begin(seed)
         moves = self._run.controller_set[Problem.REPOSITIONING]
-        self._may_move = not moves.never or "repositioning" in self._run.phase.outside.problems
+        outside = self._run.phase.outside
+        self._may_move = not moves.never or "repositioning" in outside.problems
+        # the rule could choose something that is not among the candidates
+        outside.is_idle = None if self._may_move or self._with_rule else lacks_tasks
         begun_s = self._run.now_s
         self._go_on()
         self._run.reward.take()

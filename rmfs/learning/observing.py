@@ -19,7 +19,7 @@ from rmfs.control.features import (
 )
 from rmfs.control.overview import GLOBAL_FEATURES, overview
 from rmfs.control.problems import Problem
-from rmfs.control.task_candidates import TaskCandidates, has_tasks
+from rmfs.control.task_candidates import TaskCandidates, lacks_tasks
 from rmfs.errors import InputError
 from rmfs.traffic._core import offered  # the package has one compiled library
 
@@ -54,7 +54,7 @@ class Options(NamedTuple):
     decision: Decision
     rows: NDArray[np.int64]
     features: NDArray[np.float32]
-    mask: NDArray[np.int8]
+    mask: NDArray[np.bool_]
 
     @property
     def kind(self) -> str:
@@ -146,7 +146,7 @@ class Observing:
             Whether the candidates of TA include the task of moving an idle pod.
         """
         kind = kind_of(decision)
-        if kind == "ta" and not may_move and not has_tasks(decision.view):
+        if kind == "ta" and not may_move and lacks_tasks(decision.view):
             return self._none(decision)
         candidates = decision.candidates
         rows = None  # all
@@ -184,10 +184,10 @@ def kind_of(decision: Decision) -> str:
     return decision.problem if decision.kind == "turn" else decision.kind
 
 
-def _mask(count: int, k: int, may_decline: bool) -> NDArray[np.int8]:
+def _mask(count: int, k: int, may_decline: bool) -> NDArray[np.bool_]:
     """Return which of k + 1 actions are possible, with so many candidates; not to be changed."""
-    mask = np.zeros(k + 1, np.int8)
-    mask[:count] = 1
+    mask = np.zeros(k + 1, np.bool_)
+    mask[:count] = True
     mask[k] = may_decline
     mask.flags.writeable = False
     return mask

@@ -156,7 +156,7 @@ class Decision:
         if self.kind == "next station":
             raise ImpossibleError(f"{self!r}: one of the stations {self.stations} must be chosen")
         if self.kind == "turn":
-            self._end_turn()
+            self._simulation.phase.end_turn(self.problem)
         else:
             self._reply(None if self.kind == "move" else -1, decided=False)
 
@@ -213,14 +213,6 @@ class Decision:
             simulation.phase.take(given)
         except Awaits as awaits:
             outside.pending = awaits.question
-
-    def _end_turn(self) -> None:
-        phase = self._simulation.phase
-        outside = phase.outside
-        outside.pending = outside.advisor = outside.advised = None
-        decided, outside.decided = outside.decided, 0
-        self._simulation.deciding.record(self.problem, 0, decided, decided)
-        phase.end_turn(self.problem)
 
     def _reply(self, given: Any, *, decided: bool) -> None:
         """Let TA go on with the answer."""

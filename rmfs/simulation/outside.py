@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.choices import Choice
     from rmfs.control.questions import Question
+    from rmfs.control.view import View
 
 ASKED_BY_TA = frozenset({Problem.PPS, Problem.PSA, Problem.REPOSITIONING})
 """Problems that are decided when TA asks."""
@@ -98,6 +99,9 @@ class Outside:
         applied when that choice has been made.
     refused
         Decisions of the current turn that failed because no pod, place or move was found.
+    is_idle
+        Whether a turn of TA is to be ended without asking, because there would be nothing to
+        decide; by default, TA is always asked.
     advisor
         Iterator over the decisions that the installed rule would make in the current turn.
     advised
@@ -112,6 +116,7 @@ class Outside:
     decided: int = 0
     doing: Any = None
     refused: list[Any] = field(default_factory=list)
+    is_idle: Callable[[View], bool] | None = None
     advisor: Iterator[Any] | None = None
     advised: Any = None
 

@@ -85,7 +85,7 @@ class DecisionPhase:
         self._interrupted = 0
         self._applying: Applying
         self._arrivals: ArrivalProcess
-        self._steps: dict[int, Callable[[], None]]
+        self._steps: dict[int, Callable[[], Question | None]]
         self.choices = dict(choices)
         self.outside = outside
         self._rule_state = RuleState()
@@ -173,25 +173,30 @@ class DecisionPhase:
             first = bits & -bits
             due.bits = bits ^ first
             try:
-                what[first]()
+                question = what[first]()
             except Awaits as awaits:
-                outside.pending, self._interrupted = awaits.question, first
+                question = awaits.question
+            if question is not None:
+                outside.pending, self._interrupted = question, first
                 return False
 
     def _go_on(self) -> bool:
         """Resume the step that waited for the outside; return False if it asks again."""
         step, self._interrupted = self._interrupted, 0
         try:
-            self._finish()
-            self._steps[step]()
+            if self._starting is not None or self._half_told:
+                self._finish()
+            question = self._steps[step]()
         except Awaits as awaits:
-            self.outside.pending, self._interrupted = awaits.question, step
+            question = awaits.question
+        if question is not None:
+            self.outside.pending, self._interrupted = question, step
         return self.outside.pending is None
 
-    def _what_is_done(self) -> dict[int, Callable[[], None]]:
+    def _what_is_done(self) -> dict[int, Callable[[], Question | None]]:
         """Return the action of each step, by its bit."""
         asked = {step: partial(self._ask, problem) for step, problem in steps.PROBLEM_OF.items()}
-        done: dict[int, Callable[[], None]] = {
+        done: dict[int, Callable[[], Question | None]] = {
             **asked,
             steps.ANSWERS: self._take_answers,
             steps.MANAGE: partial(self._ask, Problem.MM),
@@ -201,20 +206,24 @@ class DecisionPhase:
         }
         return {1 << step: what for step, what in done.items()}
 
-    def _ask(self, problem: Problem) -> None:
-        """Ask the controller of a problem, or the outside."""
+    def _ask(self, problem: Problem) -> Question | None:
+        """Ask the controller of a problem; return a question if the outside decides."""
         if problem is Problem.CA and self._guard is None:
-            return  # robots have as much energy as they need
+            return None  # robots have as much energy as they need
         if problem in self.outside.problems and problem not in ASKED_BY_TA:
-            raise Awaits(Question(problem, "turn"))
+            return Question(problem, "turn")
         self._deciding.ask(problem, self._controllers.installed[problem].decide())
+        return None
 
-    def _give_tasks(self) -> None:
-        """Start prepared tasks, then ask TA, with which repositioning is asked as well."""
+    def _give_tasks(self) -> Question | None:
+        """Start prepared tasks, then ask TA, with which repositioning is asked as well.
+
+        If the outside decides TA, the question is returned.
+        """
         world, outside = self._world, self.outside
         if outside.doing is not None:
             self.do_outside()
-            raise Awaits(Question(Problem.TA, "turn"))
+            return Question(Problem.TA, "turn")
         if self._guard is not None:
             self._guard.secure(self._consult)
         if self._visits.controllers:
@@ -229,7 +238,10 @@ class DecisionPhase:
         overdue = Problem.TA in self._alarms.overdue
         if world.asking or world.resting or orders_too or overdue:
             if Problem.TA in outside.problems:
-                raise Awaits(Question(Problem.TA, "turn"))
+                if outside.is_idle is None or not outside.is_idle(self._view):
+                    return Question(Problem.TA, "turn")
+                self.end_turn(Problem.TA)
+                return None
             if outside.problems & ASKED_BY_TA:
                 self._deciding.ask_between_answers(
                     Problem.TA, lambda: rule.decide(self._consult), outside, self._rule_state
@@ -237,6 +249,7 @@ class DecisionPhase:
             else:
                 self._deciding.ask(Problem.TA, rule.decide(self._consult))
         self._tasks_given()
+        return None
 
     def _tasks_given(self) -> None:
         alarms = self._alarms
@@ -384,8 +397,12 @@ class DecisionPhase:
 
     def end_turn(self, problem: Problem) -> None:
         """End a turn of decisions made outside the simulation; the phase can then continue."""
+        outside = self.outside
+        outside.pending = outside.advisor = outside.advised = None
+        decided, outside.decided = outside.decided, 0
+        self._deciding.record(problem, 0, decided, decided)
         self._interrupted = 0
-        self.outside.refused.clear()
+        outside.refused.clear()
         self._alarms.asked(problem)
         if problem is Problem.TA:
             self._tasks_given()

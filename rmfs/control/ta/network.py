@@ -13,7 +13,7 @@ from rmfs.control.decisions import MovePod, Store, WorkFor
 from rmfs.control.network import CANDIDATES, Network, Scorer, checked, start
 from rmfs.control.ta import TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
-from rmfs.control.task_candidates import MOVE, has_tasks, tasks
+from rmfs.control.task_candidates import MOVE, lacks_tasks, tasks
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -62,7 +62,7 @@ class NetworkRule(TaskAllocation[NetworkParameters]):
         """Yield tasks until declining is better."""
         may_move = consult.may_move()
         refused: list[Any] = []
-        while may_move or has_tasks(self.view):
+        while may_move or not lacks_tasks(self.view):
             found = tasks(self.view, refused)
             among = None if may_move else (found.columns["kind"] != MOVE).nonzero()[0]
             row = self._scorer.best_of(found, self.view, among)
