@@ -82,9 +82,10 @@ class TaskCandidates(Candidates):
             columns["level_share"] = view.batteries.shares()[columns["robot"]]
         return columns
 
-    def without_moves(self) -> list[int]:
-        """Return the rows that do not move an idle pod."""
-        return [row for row, (_, kind, _) in enumerate(self._rows) if kind != MOVE]
+    def without_moves(self) -> list[int] | None:
+        """Return the rows that do not move an idle pod; None if these are all rows."""
+        rows = [row for row, (_, kind, _) in enumerate(self._rows) if kind != MOVE]
+        return rows if len(rows) < len(self._rows) else None
 
     def features(self, rows: Iterable[int] | None = None) -> NDArray[np.float64]:
         """Return `FEATURES` of some rows (default: all), shape (8, C)."""
@@ -155,12 +156,14 @@ def open_work(view: View, station: int) -> int:
 def _rows(view: View, robots: Sequence[Robot]) -> list[tuple[int, int, int]]:
     """List rows: index of the robot, kind of task, station or -1."""
     rows: list[tuple[int, int, int]] = []
-    busy = [station.index for station in view.stations if station.has_open_work]
+    busy: list[int] | None = None
     for at, robot in enumerate(robots):
         if robot.pod >= 0:
             rows += [(at, WORK, station) for station in _served(view, robot.pod)]
             rows.append((at, STORE, -1))
         else:
+            if busy is None:
+                busy = [station.index for station in view.stations if station.has_open_work]
             rows += [(at, WORK, station) for station in busy]
             rows.append((at, MOVE, -1))
             if robot.index in view.asking:

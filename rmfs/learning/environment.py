@@ -300,7 +300,8 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         }
 
     def _info(self, since_s: float, mask: NDArray[np.bool_]) -> dict[str, Any]:
-        run, options = self.run, self._options
+        run, options = self._run, self._options
+        assert run is not None
         info: dict[str, Any] = {
             "action_mask": mask,
             "elapsed_s": run.now_s - since_s,
