@@ -1,4 +1,7 @@
 //! Traffic of a Robotic Mobile Fulfillment System: the motion of robots, regardless of its purpose.
+//!
+//! The compiled parts of rules (`matching`, `ranking`) and models (`sequences`, `visits`) are here
+//! as well, since the package has one compiled library; they know nothing of traffic.
 
 pub mod backward;
 pub mod buckets;
