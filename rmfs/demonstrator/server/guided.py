@@ -69,11 +69,11 @@ class GuidedTraffic(Traffic):
         """
         raise TypeError("traffic with real robots cannot be copied")
 
-    def _advance_guided(self, until_us: int) -> list[tuple[int, int, int, int]]:
+    def _advance_guided(self, until_us: int, ignored: int = 0) -> list[tuple[int, int, int, int]]:
         """Advance to the next event, as `Traffic.advance`, in step with the real robots."""
         while True:
             limit_us = min(until_us, self._tick_us)
-            events = self._advance_core(limit_us)
+            events = self._advance_core(limit_us, ignored)
             if events or limit_us < self._tick_us:
                 return events
             self._tick()
