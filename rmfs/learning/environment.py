@@ -73,7 +73,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         decisions are carried out; if some are not, its later answers may not suit the situation.
     footprint
         Whether to measure runs, so that `info` contains the footprint at the end. Without
-        measurement, steps are about 5 % faster.
+        measurement, steps are 5 to 10 % faster.
     render_mode
         `rgb_array` or None.
 
