@@ -16,8 +16,10 @@ import numpy as np
 import pydantic
 
 from rmfs.config import Model
-from rmfs.control.features import COLUMNS, LIMIT, SCALES, best_rows, unscaled, weights_of
+from rmfs.control.base import Parameters
+from rmfs.control.features import COLUMNS, LIMIT, SCALES, unscaled, weights_of
 from rmfs.control.overview import GLOBAL_FEATURES, overview
+from rmfs.traffic._core import offered  # the package has one compiled library
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,6 +57,14 @@ STARTS: dict[str, tuple[dict[str, float], float | None]] = {
 declining; None if a candidate must always be chosen."""
 
 Row = tuple[pydantic.FiniteFloat, ...]
+
+
+class ScoringParameters(Parameters):
+    """Parameters of all network rules."""
+
+    candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
+    """Maximum number of candidates that are scored: the best by the ranking of the learning
+    environment."""
 
 
 class Layer(Model):
@@ -162,10 +172,10 @@ class Scorer:
 
     def __init__(self, kind: str, network: Network, candidates: int = CANDIDATES) -> None:
         self.kind = kind
-        self.candidates = candidates
         names = COLUMNS[kind]
-        self._ranking = weights_of(kind)
-        self._scales = np.array([[SCALES[name]] for name in names])
+        scales = np.array([SCALES[name] for name in names], np.float64)
+        columns = np.arange(len(names))
+        self._offered = weights_of(kind), candidates, scales, columns, len(names), LIMIT
         self._linear = [network.linear.get(name, 0.0) for name in names]
         declining = network.decline
         self._declining = None if declining is None else dict(declining)
@@ -194,10 +204,9 @@ class Scorer:
         block = unscaled(candidates, self.kind, view)
         if among is not None:
             block = block[:, among]
-        best = best_rows(block, self._ranking, self.candidates)
-        features = (block[:, best] / self._scales).clip(-LIMIT, LIMIT).T.astype(np.float32)
+        best, features = offered(block, *self._offered)
         whole = overview(view)
-        scores = self.scores(features, whole)
+        scores = self.scores(features[: len(best)], whole)
         chosen = int(scores.argmax())
         declining = self.declining(whole)
         if declining is not None and declining > scores[chosen]:

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from rmfs.cli.options import SetOption
 from rmfs.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from rmfs.learning.training import Task
 
 app = typer.Typer(context_settings={"help_option_names": ["-h", "--help"]})
 
@@ -37,23 +42,12 @@ def learn(
     set_: SetOption = None,
 ) -> None:
     """Train linear rules by CMA-ES and write a controllers file for `rmfs run`."""
-    from rmfs.config import parse_override
     from rmfs.control.toml import to_toml
     from rmfs.files import write_text
-    from rmfs.learning.training import Task, named, train
+    from rmfs.learning.training import named, train
 
-    if out.suffix != ".toml":
-        raise InputError(f"--out {out}: must be a .toml file")
-    given = [parse_override(one) for one in set_ or []]
-    task = Task(
-        layout,
-        scenario,
-        controllers,
-        problems.split(","),
-        dict(weight("--objective", one) for one in objective.split(",")),
-        [number(one) for one in seeds.split(",")],
-        {".".join(path): value for path, value in given},
-    )
+    require_toml(out)
+    task = task_of((layout, scenario, controllers), problems, objective, seeds, set_)
     found = train(
         task, generations=generations, population=population, seed=seed, jobs=jobs, told=print
     )
@@ -62,6 +56,52 @@ def learn(
     print(
         f"{out}: mean objective over the training seeds {found.value:.6g} "
         f"(default weights: {found.start_value:.6g})"
+    )
+
+
+def require_toml(out: Path) -> None:
+    """Check that the option `--out` names a TOML file.
+
+    Raises
+    ------
+    InputError
+        If it does not.
+    """
+    if out.suffix != ".toml":
+        raise InputError(f"--out {out}: must be a .toml file")
+
+
+def task_of(
+    inputs: tuple[str, str, str],
+    problems: str,
+    objective: str,
+    seeds: str,
+    overrides: Sequence[str] | None,
+) -> Task:
+    """Return the task that the options of a training command describe.
+
+    Parameters
+    ----------
+    inputs
+        Layout, scenario and set of controllers: names or files.
+    problems, objective, seeds, overrides
+        Values of the options `--problems`, `--objective`, `--seeds` and `--set`.
+
+    Raises
+    ------
+    InputError
+        If a value is malformed; the message names the option.
+    """
+    from rmfs.config import parse_override
+    from rmfs.learning.training import Task
+
+    given = [parse_override(one) for one in overrides or []]
+    return Task(
+        *inputs,
+        problems.split(","),
+        dict(weight("--objective", one) for one in objective.split(",")),
+        [number(one) for one in seeds.split(",")],
+        {".".join(path): value for path, value in given},
     )
 
 

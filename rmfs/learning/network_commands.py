@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from rmfs.cli.options import SetOption
-from rmfs.errors import InputError
-from rmfs.learning.commands import number, weight
+from rmfs.learning.commands import require_toml, task_of, weight
 
 app = typer.Typer(context_settings={"help_option_names": ["-h", "--help"]})
 
@@ -63,24 +62,13 @@ def learn_network(
     set_: SetOption = None,
 ) -> None:
     """Train network rules by PPO and write a controllers file for `rmfs run`."""
-    from rmfs.config import parse_override
     from rmfs.control.toml import to_toml
     from rmfs.files import write_text
     from rmfs.learning.ppo import train_network
-    from rmfs.learning.training import Task, named
+    from rmfs.learning.training import named
 
-    if out.suffix != ".toml":
-        raise InputError(f"--out {out}: must be a .toml file")
-    given = [parse_override(one) for one in set_ or []]
-    task = Task(
-        layout,
-        scenario,
-        controllers,
-        problems.split(","),
-        dict(weight("--objective", one) for one in objective.split(",")),
-        [number(one) for one in seeds.split(",")],
-        {".".join(path): value for path, value in given},
-    )
+    require_toml(out)
+    task = task_of((layout, scenario, controllers), problems, objective, seeds, set_)
     found = train_network(
         task,
         reward=dict(weight("--reward", one) for one in reward.split(",")),
@@ -96,8 +84,8 @@ def learn_network(
     )
     told = (
         f"Trained by rmfs learn-network on {layout}, {scenario}: reward {reward}"
-        f"{', less its mean,' if average else ','} {steps} "
-        f"decisions, seed {seed}; objective {objective}, seeds {seeds}."
+        f"{', less its mean,' if average else ','} {steps} decisions, seed {seed}; "
+        f"objective {objective}, seeds {seeds}."
     )
     write_text(out, to_toml(named(found, out.stem, told)))
     print(

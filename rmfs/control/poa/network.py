@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import pydantic
 
-from rmfs.control.base import Parameters
 from rmfs.control.candidates import candidates_for
-from rmfs.control.network import CANDIDATES, Network, Scorer, checked, start
+from rmfs.control.network import Network, Scorer, ScoringParameters, checked, start
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
@@ -22,12 +21,9 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 
-class NetworkParameters(Parameters):
+class NetworkParameters(ScoringParameters):
     """Parameters of POA network."""
 
-    candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
-    """Maximum number of candidates that are scored: the best by the ranking of the learning
-    environment."""
     network: Network = pydantic.Field(default_factory=lambda: start("poa"))
     """The network that scores pairs of order and station (see the page on learning)."""
 

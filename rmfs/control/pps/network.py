@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import pydantic
 
 from rmfs.control.candidates import candidates_for
-from rmfs.control.network import CANDIDATES, Network, Scorer, checked, start
+from rmfs.control.network import Network, Scorer, ScoringParameters, checked, start
 from rmfs.control.pps import LateBinding, PodSelection
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
@@ -28,12 +28,9 @@ _KINDS = {
 }
 
 
-class NetworkParameters(LateBinding):
+class NetworkParameters(ScoringParameters, LateBinding):
     """Parameters of PPS network."""
 
-    candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
-    """Maximum number of candidates that are scored: the best by the ranking of the learning
-    environment."""
     pick_pod: Network = pydantic.Field(default_factory=lambda: start("pick pod"))
     """The network that scores pods for a pick station (see the page on learning)."""
     replenishment_pod: Network = pydantic.Field(default_factory=lambda: start("replenishment pod"))

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import pydantic
 
-from rmfs.control.base import Parameters
 from rmfs.control.candidates import candidates_for
-from rmfs.control.network import CANDIDATES, Network, Scorer, checked, start
+from rmfs.control.network import Network, Scorer, ScoringParameters, checked, start
 from rmfs.control.problems import Problem
 from rmfs.control.psa import PodStorageAssignment
 from rmfs.control.questions import Question
@@ -20,12 +19,9 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 
-class NetworkParameters(Parameters):
+class NetworkParameters(ScoringParameters):
     """Parameters of PSA network."""
 
-    candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
-    """Maximum number of candidates that are scored: the best by the ranking of the learning
-    environment."""
     network: Network = pydantic.Field(default_factory=lambda: start("place"))
     """The network that scores storage locations (see the page on learning)."""
 

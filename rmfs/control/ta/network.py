@@ -8,9 +8,8 @@ import numpy as np
 import pydantic
 
 from rmfs.control import errands
-from rmfs.control.base import Parameters
 from rmfs.control.decisions import MovePod, Store, WorkFor
-from rmfs.control.network import CANDIDATES, Network, Scorer, checked, start
+from rmfs.control.network import Network, Scorer, ScoringParameters, checked, start
 from rmfs.control.ta import TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.control.task_candidates import MOVE, lacks_tasks, tasks
@@ -24,12 +23,9 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 
-class NetworkParameters(Parameters):
+class NetworkParameters(ScoringParameters):
     """Parameters of TA network."""
 
-    candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
-    """Maximum number of candidates that are scored: the best by the ranking of the learning
-    environment."""
     network: Network = pydantic.Field(default_factory=lambda: start("ta"))
     """The network that scores pairs of a robot and a task (see the page on learning)."""
     rest: RestRule = "nearest"
