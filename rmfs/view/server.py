@@ -173,6 +173,7 @@ class _Handler(BaseHTTPRequestHandler):
     server: Server
     protocol_version = "HTTP/1.1"
     timeout = PATIENCE_S  # of a single read or write
+    asked_before = False
 
     def do_GET(self) -> None:
         self.server.reads(self.connection, over=True)
@@ -276,7 +277,9 @@ class _Handler(BaseHTTPRequestHandler):
 
     def handle_one_request(self) -> None:
         """Await a request, not for ever."""
-        self.server.reads(self.connection)
+        if self.asked_before:  # the first has been awaited since the connection was accepted
+            self.server.reads(self.connection)
+        self.asked_before = True
         super().handle_one_request()
 
     def handle(self) -> None:

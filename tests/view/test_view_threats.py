@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import http.client
+import itertools
 import json
 import shutil
 import socket
@@ -150,15 +151,29 @@ def test_slow_clients_are_hung_up_on(server: Server, start: bytes) -> None:
     assert ask(server, "/session").status == 200
 
 
+@pytest.mark.parametrize("late", [None, 31], ids=["in-time", "a-thread-starts-late"])
 def test_a_flood_of_connections_leaves_room_after_it(
-    server: Server, monkeypatch: pytest.MonkeyPatch
+    server: Server, monkeypatch: pytest.MonkeyPatch, late: int | None
 ) -> None:
-    """Those that ask for nothing are hung up on when others come."""
+    """Those that ask for nothing are hung up on when others come, the oldest first."""
     monkeypatch.setattr(servers, "MOST_CONNECTIONS", 8)
     monkeypatch.setattr(servers, "PATIENCE_S", 60.0)
-    lines = [
-        socket.create_connection(("127.0.0.1", server.server_port), timeout=20) for _ in range(40)
-    ]
+    serve, started = Server.process_request_thread, itertools.count()
+    most_connected = threading.Event()
+
+    def start(self: Server, request: object, client_address: object) -> None:
+        if next(started) == late:
+            most_connected.wait(20)
+        serve(self, request, client_address)
+
+    monkeypatch.setattr(Server, "process_request_thread", start)
+    lines = []
+    for _ in range(40):
+        lines.append(socket.create_connection(("127.0.0.1", server.server_port), timeout=20))
+        time.sleep(0.01)
+        if len(lines) == 36:
+            most_connected.set()
+            time.sleep(0.1)
     refused = 0
     for line in lines[:32]:
         line.settimeout(10)
@@ -168,7 +183,6 @@ def test_a_flood_of_connections_leaves_room_after_it(
             refused += 1
     assert refused == 32
     assert threading.active_count() < 30
-    assert ask(server, "/session").status == 200
     for line in lines:
         line.close()
     end = time.monotonic() + 20
