@@ -1,4 +1,4 @@
-"""Guidance of a layout: extra costs of edges, by which paths are preferred, and its file format."""
+"""Guidance of a layout: extra costs that make robots avoid edges, and its file format."""
 
 from __future__ import annotations
 

@@ -39,6 +39,8 @@ PATIENCE_S = 300
 """Wall time after which a case hangs: the process is ended, and the case is on file."""
 
 OURS = "time-windows"
+SWIFT = f"{OURS}:swift=true"
+"""The search for large fleets, which small ones would never use."""
 
 
 class FuzzError(AssertionError):
@@ -72,7 +74,7 @@ def draw(number: int) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "case": number,
-        "planner": one(*all_planners(), OURS, OURS, OURS),
+        "planner": one(*all_planners(), OURS, OURS, SWIFT),
         "spoilt": one("nothing", "nothing", "nothing", "an edge", "a queue", "a place", "turned"),
         "layout": {
             "seed": int(rng.integers(1000)),

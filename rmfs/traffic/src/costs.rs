@@ -9,12 +9,15 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::backward::{Backward, ROLLING};
+use crate::backward::Backward;
 use crate::buckets::Buckets;
 use crate::kinematics::Kind;
 use crate::network::Network;
 use crate::patience::look_up;
 use crate::units::Us;
+
+/// Each (waypoint, heading) has two states in a search forwards: at rest (0) and rolling (1).
+const ROLLING: usize = 1;
 
 /// Time that stands for "cannot be reached".
 pub const UNREACHABLE: u32 = u32::MAX;
@@ -91,7 +94,9 @@ impl Model {
         let mut search = Backward::new(network);
         search.begin(network, self, goal, loaded, None);
         search.advance(network, self, u32::MAX);
-        (0..network.nodes * self.headings).map(|index| search.best(index)).collect()
+        let states = (0..network.nodes as u32)
+            .flat_map(|node| (0..self.headings as u8).map(move |heading| (node, heading)));
+        states.map(|(node, heading)| search.best(node, heading)).collect()
     }
 
     /// Times from rest at `source` (any heading) to rest at every waypoint.

@@ -67,6 +67,19 @@ impl Plan {
     }
 }
 
+/// An edge as seen from its end. Searches read edges in no order that a cache foresees, so they are
+/// kept small.
+#[derive(Clone, Copy, Debug)]
+struct Behind {
+    /// The waypoint where it starts, `NONE` if there is no edge.
+    from: u32,
+    /// Index of its length; with `MORE`, there are further edges.
+    length: u32,
+}
+
+/// Marks an edge that is not the only one with its end and direction.
+const MORE: u32 = 1 << 31;
+
 /// The immutable graph.
 #[derive(Clone, Debug)]
 pub struct Network {
@@ -79,15 +92,21 @@ pub struct Network {
     next: Vec<u32>,
     /// Length of that edge in metres.
     length: Vec<f64>,
-    /// Waypoints from which `v` is reached in direction `h`, and the metres, CSR by `v * H + h`.
-    before_start: Vec<u32>,
-    before: Vec<(u32, f64)>,
+    /// The first edge that reaches `v` in direction `h`, by `v * H + h`.
+    before: Vec<Behind>,
+    /// Further such edges, with their `v * H + h`, ascending.
+    more_before: Vec<(u32, Behind)>,
+    /// Distinct lengths of edges in metres, ascending.
+    lengths: Vec<f64>,
     pub storage: Vec<bool>,
     /// Station whose private queue zone the waypoint belongs to, or `NONE`.
     pub zone: Vec<u32>,
     /// The same with closed waypoints as a separate zone, which determines who may enter a
     /// waypoint.
     access: Vec<u32>,
+    /// Whether anybody may enter the waypoint: it is no storage location, in no queue zone, and not
+    /// closed.
+    open: Vec<bool>,
     /// What a robot at the waypoint occupies: the waypoint, or the shaft of its elevator.
     pub resource: Vec<u32>,
     pub resources: usize,
@@ -98,11 +117,10 @@ pub struct Network {
     rides_to: Vec<Vec<Ride>>,
     x: Vec<f64>,
     y: Vec<f64>,
-    /// Distinct coordinates, and which of them each waypoint has.
+    /// Distinct coordinates, and the column and row of each waypoint.
     pub columns: Vec<f64>,
     pub rows: Vec<f64>,
-    pub column: Vec<u32>,
-    pub row: Vec<u32>,
+    pub cells: Vec<(u32, u32)>,
     /// Whether all edges run along x or y and elevators move robots straight up or down.
     pub axis_parallel: bool,
 }
@@ -148,12 +166,14 @@ impl Network {
                 incoming[w * count + h].push((v as u32, metres));
             }
         }
-        let (before_start, before) = csr(&incoming);
+        let (lengths, before, more_before) = edges_behind(&incoming);
         let zone = zones(&plan, nodes);
         let island = islands(&plan, nodes);
         let axis_parallel = is_axis_parallel(&plan, &headings);
         let (columns, column) = distinct(&plan.x);
         let (rows, row) = distinct(&plan.y);
+        let open = zone.iter().zip(&plan.storage).map(|(&z, &storage)| z == NONE && !storage);
+        let open = open.collect();
         let (resource, resources) = shared_resources(&plan.elevators, nodes);
         let mut rides_from = vec![Vec::new(); nodes];
         let mut rides_to = vec![Vec::new(); nodes];
@@ -167,10 +187,12 @@ impl Network {
             headings,
             next,
             length,
-            before_start,
             before,
+            more_before,
+            lengths,
             storage: plan.storage,
             access: zone.clone(),
+            open,
             zone,
             resource,
             resources,
@@ -182,8 +204,7 @@ impl Network {
             y: plan.y,
             columns,
             rows,
-            column,
-            row,
+            cells: column.into_iter().zip(row).collect(),
             axis_parallel,
         })
     }
@@ -221,9 +242,22 @@ impl Network {
     }
 
     /// Waypoints from which `node` is reached by driving in direction `heading`, and the metres.
-    pub fn behind(&self, node: u32, heading: u8) -> &[(u32, f64)] {
+    #[inline]
+    pub fn behind(&self, node: u32, heading: u8) -> impl Iterator<Item = (u32, f64)> + '_ {
         let index = self.index(node, heading);
-        &self.before[self.before_start[index] as usize..self.before_start[index + 1] as usize]
+        let first = self.before[index];
+        let more: &[_] = if first.length & MORE == 0 { &[] } else { self.others(index as u32) };
+        let all = (first.from != NONE).then_some(first).into_iter();
+        let edges = all.chain(more.iter().map(|&(_, edge)| edge));
+        edges.map(|edge| (edge.from, self.lengths[(edge.length & !MORE) as usize]))
+    }
+
+    /// The edges of `more_before` at an index of (waypoint, heading).
+    #[cold]
+    fn others(&self, index: u32) -> &[(u32, Behind)] {
+        let first = self.more_before.partition_point(|&(other, _)| other < index);
+        let end = self.more_before.partition_point(|&(other, _)| other <= index);
+        &self.more_before[first..end]
     }
 
     /// Whether a waypoint is a stop of an elevator.
@@ -254,7 +288,12 @@ impl Network {
     /// Whether a robot on its way to `goal` may drive from `from` onto `to`: queue zones only if
     /// bound for their station; storage locations only if empty or if it is the goal; closed waypoints
     /// only from a closed one.
+    #[inline]
     pub fn may_enter(&self, from: u32, to: u32, goal: u32, loaded: bool) -> bool {
+        self.open[to as usize] || self.may_enter_restricted(from, to, goal, loaded)
+    }
+
+    fn may_enter_restricted(&self, from: u32, to: u32, goal: u32, loaded: bool) -> bool {
         let zone = self.access[to as usize];
         let private = zone != NONE
             && zone != self.access[from as usize]
@@ -270,7 +309,9 @@ impl Network {
 
     /// Closes a waypoint, or opens it again.
     pub fn set_closed(&mut self, node: u32, closed: bool) {
-        self.access[node as usize] = if closed { CLOSED } else { self.zone[node as usize] };
+        let node = node as usize;
+        self.access[node] = if closed { CLOSED } else { self.zone[node] };
+        self.open[node] = self.access[node] == NONE && !self.storage[node];
     }
 
     /// Waypoints that are closed.
@@ -330,16 +371,25 @@ fn is_axis_parallel(plan: &Plan, headings: &[MicroTurn]) -> bool {
     plan.rides.iter().all(straight_up) && headings.iter().all(|heading| heading % 250_000 == 0)
 }
 
-/// Flattens lists into offsets and items.
-fn csr<T: Copy>(lists: &[Vec<T>]) -> (Vec<u32>, Vec<T>) {
-    let mut start = Vec::with_capacity(lists.len() + 1);
-    let mut items = Vec::new();
-    start.push(0);
-    for list in lists {
-        items.extend_from_slice(list);
-        start.push(items.len() as u32);
+/// Returns the distinct lengths of edges, the first edge of each list, and the others with the
+/// index of their list.
+fn edges_behind(lists: &[Vec<(u32, f64)>]) -> (Vec<f64>, Vec<Behind>, Vec<(u32, Behind)>) {
+    let all: Vec<f64> = lists.iter().flatten().map(|edge| edge.1).collect();
+    let (lengths, which) = distinct(&all);
+    let mut which = which.into_iter();
+    let mut firsts = Vec::with_capacity(lists.len());
+    let mut others = Vec::new();
+    for (index, list) in lists.iter().enumerate() {
+        let edges = list.iter().zip(&mut which);
+        let mut edges = edges.map(|(&(from, _), length)| Behind { from, length });
+        let mut first = edges.next().unwrap_or(Behind { from: NONE, length: 0 });
+        others.extend(edges.map(|edge| (index as u32, edge)));
+        if list.len() > 1 {
+            first.length |= MORE;
+        }
+        firsts.push(first);
     }
-    (start, items)
+    (lengths, firsts, others)
 }
 
 /// Assigns each queue waypoint to the station whose queue list is nearest over queue edges.

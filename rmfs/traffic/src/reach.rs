@@ -22,7 +22,7 @@ pub fn carried_to(network: &Network, goal: u32) -> Vec<bool> {
     let ends = |node: u32| network.storage[node as usize] && node != goal;
     spread(network, goal, ends, |node, next| {
         for heading in 0..network.heading_count() as u8 {
-            let behind = network.behind(node, heading).iter().map(|&(from, _)| from);
+            let behind = network.behind(node, heading).map(|(from, _)| from);
             next.extend(behind.filter(|&from| network.may_enter(from, node, goal, true)));
         }
         next.extend(network.rides_to(node).map(|ride| ride.from));

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeSet, HashSet};
 
+use _core::backward::Backward;
 use _core::costs::Model;
 use _core::guidance::{Guidance, guidance};
 use _core::kinematics::Kind;
@@ -377,6 +378,50 @@ fn bounds_never_exceed_the_time_on_an_empty_network() {
             }
         }
     }
+}
+
+/// With bounds that count turns, the search from the goal knows fewer states, but what it says of
+/// them is as before: never too much, exact where it is known, and exact on ways that are short
+/// enough.
+#[test]
+fn bounds_that_count_turns_leave_unhindered_times_as_they_are() {
+    let kind = kind();
+    let mut random = Random(11);
+    let (mut known, mut unknown) = (0, 0);
+    for round in 0..300 {
+        let network = random_network(&mut random, 1 + round % 2);
+        let model = Model::new(&network, &kind);
+        let (goal, start) = (random.below(12) as u32, random.below(12) as u32);
+        let (heading, loaded) = (random.below(4) as u8, random.chance(50));
+        let times = model.towards(&network, goal, loaded);
+        let mut search = Backward::new(&network);
+        search.begin(&network, &model, goal, loaded, Some(start));
+        search.count_turns(&network, &model, heading);
+        while search.reach() < u32::MAX {
+            // of a loaded robot, only what matters on its way is known
+            for node in (0..12).filter(|&node| !loaded || node == start) {
+                for facing in 0..network.heading_count() as u8 {
+                    if loaded && facing != heading {
+                        continue;
+                    }
+                    let exact = times[network.index(node, facing)];
+                    let found = search.to_go(&network, node, facing);
+                    assert!(found <= exact, "{found} {exact}");
+                    if search.knows(&network, node, facing) {
+                        assert_eq!(found, exact);
+                        known += 1;
+                    } else {
+                        unknown += 1;
+                    }
+                }
+            }
+            let reach = search.reach() + (1 << 18);
+            search.advance(&network, &model, reach);
+        }
+        let least = times[network.index(start, heading)];
+        assert_eq!(search.to_go(&network, start, heading), least);
+    }
+    assert!(known > 10_000 && unknown > 10_000, "{known} {unknown}");
 }
 
 /// Extra costs of zero change no plan.

@@ -26,7 +26,7 @@ pub struct Swift {
     pub wait: Us,
     /// From the earliest departure again, if none of them found a way.
     pub last: [Effort; 2],
-    /// Unhindered times are searched for only near the best way.
+    /// Unhindered times are searched for only on the best ways.
     pub guide: Guide,
     /// Optional plans: limit of labels, and maximum lateness compared with the unhindered time.
     pub labels_to_try: u64,
@@ -41,7 +41,7 @@ impl Swift {
         later: (6, 200),
         wait: 5_000_000,
         last: [(6, 2_000), (16, 10_000)],
-        guide: Guide::Near(3_000_000),
+        guide: Guide::Near(0),
         labels_to_try: 100,
         detour_to_try: 20_000_000,
     };

@@ -1,6 +1,8 @@
 //! Unhindered times to one goal, searched backwards and only as far as needed; with guidance, times
 //! plus the extra cost of the edges driven.
 
+mod bounds;
+
 use std::sync::Arc;
 
 use crate::buckets::Buckets;
@@ -9,36 +11,19 @@ use crate::guidance::Guidance;
 use crate::network::Network;
 use crate::patience::look_up;
 
-/// Keeps the bound from the start below the sum of rounded edge times.
-const SAFETY: f64 = 0.999_99;
+use bounds::{Bound, Turns, bounds};
 
-/// Each (waypoint, heading) has two states: at rest (0) and rolling (1).
-pub const ROLLING: usize = 1;
-
-/// Times of states that are not expanded; they are only values.
-const STRAIGHT: usize = 2;
-
-/// Entries of an index of (waypoint, heading), which are looked up together.
-const ENTRIES: usize = 4;
+/// Each (waypoint, heading) has two states, at rest and rolling; times noted for rest before going
+/// straight on or back are only values, and not expanded. What is looked up together is adjacent:
+/// for a waypoint, first the times of one sort for all headings, then those of the next.
+const AT_REST: usize = 0;
+const STRAIGHT: usize = 1;
+const ROLLING: usize = 2;
+const SORTS: usize = 3;
 
 /// Extra costs add up to at most this, so that no sum exceeds the range of a time; beyond it, costs
 /// are lower bounds.
 const CEILING: u32 = 1 << 31;
-
-/// Least times to cover an extent along one axis: as whole runs, or as part of a run already
-/// counted.
-#[derive(Clone, Copy, Debug, Default)]
-struct Bound {
-    at_rest: u32,
-    rolling: u32,
-}
-
-impl Bound {
-    fn of(model: &Model, metres: f64) -> Self {
-        let safe = |time: u32| (f64::from(time) * SAFETY) as u32;
-        Self { at_rest: safe(model.run(metres)), rolling: safe(model.roll(metres)) }
-    }
-}
 
 /// How robots can come to rest at a waypoint with a heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +51,9 @@ pub struct Backward {
     arrivals: Vec<Arrival>,
     columns: Vec<Bound>,
     rows: Vec<Bound>,
+    /// Bounds of the turning times from the start, if they are used.
+    turns: Turns,
+    counts_turns: bool,
     /// Lower bounds of the time to the goal by column and by row; empty if not used.
     columns_to_go: Vec<Bound>,
     rows_to_go: Vec<Bound>,
@@ -77,7 +65,7 @@ impl Backward {
     /// Memory for searches on `network`.
     pub fn new(network: &Network) -> Self {
         let headings = network.heading_count();
-        let queue = Buckets::new(network.nodes * headings * ENTRIES);
+        let queue = Buckets::new(network.nodes * headings * SORTS);
         let arrivals = (0..network.nodes as u32)
             .flat_map(|node| {
                 (0..headings as u8).map(move |heading| arrival(network, node, heading))
@@ -93,6 +81,8 @@ impl Backward {
             arrivals,
             columns: Vec::new(),
             rows: Vec::new(),
+            turns: Turns::default(),
+            counts_turns: false,
             columns_to_go: Vec::new(),
             rows_to_go: Vec::new(),
             walk: Vec::new(),
@@ -121,30 +111,53 @@ impl Backward {
         (self.goal, self.loaded, self.start) = (goal, loaded, start);
         let led = start.filter(|_| network.axis_parallel);
         bounds(network, model, led, &mut self.columns, &mut self.rows);
+        self.counts_turns = false;
         self.columns_to_go.clear();
         self.queue.clear();
         for heading in 0..self.headings as u8 {
-            self.queue.improve(network.index(goal, heading) * ENTRIES, 0, 0);
+            self.queue.improve(self.entry(goal, AT_REST, heading), 0, 0);
         }
     }
 
-    /// The least time found so far from rest at an index of (waypoint, heading).
-    pub fn best(&self, index: usize) -> u32 {
-        let entry = index * ENTRIES;
-        self.queue.best(entry).min(self.queue.best(entry + STRAIGHT))
+    #[inline]
+    fn entry(&self, node: u32, sort: usize, heading: u8) -> usize {
+        (node as usize * SORTS + sort) * self.headings + heading as usize
     }
 
-    /// A lower bound of the time from the start to rest at a waypoint.
-    fn bound_at_rest(&self, network: &Network, node: u32) -> u32 {
-        let (column, row) = (network.column[node as usize], network.row[node as usize]);
+    /// The least time found so far from rest at (waypoint, heading).
+    pub fn best(&self, node: u32, heading: u8) -> u32 {
+        let entry = self.entry(node, AT_REST, heading);
+        self.queue.best(entry).min(self.queue.best(entry + STRAIGHT * self.headings))
+    }
+
+    /// From now on, bounds of the time from the start include turning there from a heading and on the
+    /// way, so that the search looks at fewer waypoints off the best way. To be called right after
+    /// [`Backward::begin`].
+    pub fn count_turns(&mut self, network: &Network, model: &Model, from: u8) {
+        if let Some(start) = self.start.filter(|_| network.axis_parallel) {
+            self.turns.prepare(network, model, start, from);
+            self.counts_turns = true;
+        }
+    }
+
+    /// A lower bound of the driving time from the start to rest at a waypoint.
+    fn driving(&self, network: &Network, node: u32) -> u32 {
+        let (column, row) = network.cells[node as usize];
         self.columns[column as usize].at_rest + self.rows[row as usize].at_rest
     }
 
-    /// A lower bound of the time from the start to passing a waypoint in a run whose speeding up and
-    /// braking is counted on the way from there to the goal.
+    /// A lower bound of the time from the start to rest at (waypoint, heading).
+    fn bound_at_rest(&self, network: &Network, node: u32, heading: u8) -> u32 {
+        let turns = if self.counts_turns { self.turns.bound(network, node, heading) } else { 0 };
+        self.driving(network, node) + turns
+    }
+
+    /// A lower bound of the driving time from the start to passing a waypoint in a run whose speeding
+    /// up and braking is counted on the way from there to the goal.
+    #[inline]
     fn bound_rolling(&self, network: &Network, node: u32, heading: u8) -> u32 {
-        let column = &self.columns[network.column[node as usize] as usize];
-        let row = &self.rows[network.row[node as usize] as usize];
+        let (column, row) = network.cells[node as usize];
+        let (column, row) = (&self.columns[column as usize], &self.rows[row as usize]);
         if network.along_x(heading) {
             column.rolling + row.at_rest
         } else {
@@ -166,15 +179,15 @@ impl Backward {
         if self.columns_to_go.is_empty() {
             return 0;
         }
-        let (column, row) = (network.column[node as usize], network.row[node as usize]);
+        let (column, row) = network.cells[node as usize];
         self.columns_to_go[column as usize].at_rest + self.rows_to_go[row as usize].at_rest
     }
 
     /// Lower bound of the time from rest at (waypoint, heading) to the goal; exact where the search
     /// has been completed.
     pub fn to_go(&self, network: &Network, node: u32, heading: u8) -> u32 {
-        let known = self.best(network.index(node, heading));
-        let bound = self.bound_at_rest(network, node);
+        let known = self.best(node, heading);
+        let bound = self.bound_at_rest(network, node, heading);
         let settled = self.queue.settled();
         if known != UNREACHABLE && known.saturating_add(bound) < settled {
             return known;
@@ -187,10 +200,11 @@ impl Backward {
 
     /// Whether [`Backward::to_go`] cannot get any better for this state.
     pub fn knows(&self, network: &Network, node: u32, heading: u8) -> bool {
-        let known = self.best(network.index(node, heading));
+        let known = self.best(node, heading);
         self.queue.exhausted()
             || (known != UNREACHABLE
-                && known.saturating_add(self.bound_at_rest(network, node)) < self.queue.settled())
+                && known.saturating_add(self.bound_at_rest(network, node, heading))
+                    < self.queue.settled())
     }
 
     /// Total time (from start to goal over a state) up to which every state is known.
@@ -200,28 +214,35 @@ impl Backward {
 
     /// Continues the search until every state with a total time below `limit` is known.
     pub fn advance(&mut self, network: &Network, model: &Model, limit: u32) {
-        if self.guidance.is_some() {
-            self.advance_to::<true>(network, model, limit);
-        } else {
-            self.advance_to::<false>(network, model, limit);
+        match (self.guidance.is_some(), self.counts_turns) {
+            (false, false) => self.advance_to::<false, false>(network, model, limit),
+            (false, true) => self.advance_to::<false, true>(network, model, limit),
+            (true, false) => self.advance_to::<true, false>(network, model, limit),
+            (true, true) => self.advance_to::<true, true>(network, model, limit),
         }
     }
 
-    fn advance_to<const GUIDED: bool>(&mut self, network: &Network, model: &Model, limit: u32) {
+    /// `GUIDED`: extra costs are added; `TURNS`: bounds include turning.
+    fn advance_to<const GUIDED: bool, const TURNS: bool>(
+        &mut self,
+        network: &Network,
+        model: &Model,
+        limit: u32,
+    ) {
         while let Some((cost, state)) = self.queue.pop(limit) {
             look_up();
-            let (index, headings) = ((state / ENTRIES) as u32, self.headings as u32);
-            let (node, heading) = (index / headings, (index % headings) as u8);
-            if state % ENTRIES == ROLLING {
-                self.roll_back::<GUIDED>(network, model, node, heading, cost);
+            let (row, headings) = (state as u32 / self.headings as u32, self.headings as u32);
+            let (node, heading) = (row / SORTS as u32, (state as u32 % headings) as u8);
+            if row % SORTS as u32 == ROLLING as u32 {
+                self.roll_back::<GUIDED, TURNS>(network, model, node, heading, cost);
             } else {
-                self.come_from::<GUIDED>(network, model, node, heading, cost);
+                self.come_from::<GUIDED, TURNS>(network, model, node, heading, cost);
             }
         }
     }
 
     /// A run that has reached top speed started at this waypoint or before it.
-    fn roll_back<const GUIDED: bool>(
+    fn roll_back<const GUIDED: bool, const TURNS: bool>(
         &mut self,
         network: &Network,
         model: &Model,
@@ -229,8 +250,8 @@ impl Backward {
         heading: u8,
         cost: u32,
     ) {
-        self.start_here(network, model, node, heading, cost);
-        for &(from, length) in network.behind(node, heading) {
+        self.start_here::<TURNS>(network, model, node, heading, cost);
+        for (from, length) in network.behind(node, heading) {
             if !self.passable(network, from, node) {
                 continue;
             }
@@ -239,15 +260,15 @@ impl Backward {
                 cost = dearer(cost, self.extra(network, from, heading));
             }
             if self.loaded && network.storage[from as usize] {
-                self.start_here(network, model, from, heading, cost);
+                self.start_here::<TURNS>(network, model, from, heading, cost);
             } else {
-                self.offer(network, from, heading, ROLLING, cost);
+                self.offer_rolling::<TURNS>(network, from, heading, cost);
             }
         }
     }
 
     /// The robot stops here: short runs that end so, the first long one, and rides.
-    fn come_from<const GUIDED: bool>(
+    fn come_from<const GUIDED: bool, const TURNS: bool>(
         &mut self,
         network: &Network,
         model: &Model,
@@ -261,7 +282,7 @@ impl Backward {
         let mut walk = std::mem::take(&mut self.walk);
         walk.push((node, 0.0, 0));
         while let Some((here, total, extra)) = walk.pop() {
-            for &(from, length) in network.behind(here, heading) {
+            for (from, length) in network.behind(here, heading) {
                 if !self.passable(network, from, here) {
                     continue;
                 }
@@ -274,9 +295,9 @@ impl Backward {
                 }
                 let only_start = self.loaded && network.storage[from as usize];
                 if total >= model.full_speed && !only_start {
-                    self.offer(network, from, heading, ROLLING, started);
+                    self.offer_rolling::<TURNS>(network, from, heading, started);
                 } else {
-                    self.start_here(network, model, from, heading, started);
+                    self.start_here::<TURNS>(network, model, from, heading, started);
                     if !only_start {
                         walk.push((from, total, extra));
                     }
@@ -285,7 +306,9 @@ impl Backward {
         }
         self.walk = walk;
         for ride in network.rides_to(node) {
-            self.offer(network, ride.from, heading, 0, cost + ride.travel as u32);
+            let cost = cost + ride.travel as u32;
+            let total = cost + self.bound_at_rest(network, ride.from, heading);
+            self.queue.improve(self.entry(ride.from, AT_REST, heading), cost, total);
         }
     }
 
@@ -300,39 +323,41 @@ impl Backward {
     }
 
     /// The robot is at rest with any heading, turns and starts a run of known cost.
-    fn start_here(&mut self, network: &Network, model: &Model, node: u32, heading: u8, cost: u32) {
-        let first = network.index(node, 0);
-        let same = first + heading as usize;
-        if self.queue.best(same * ENTRIES + STRAIGHT) <= cost {
+    fn start_here<const TURNS: bool>(
+        &mut self,
+        network: &Network,
+        model: &Model,
+        node: u32,
+        heading: u8,
+        cost: u32,
+    ) {
+        if self.queue.best(self.entry(node, STRAIGHT, heading)) <= cost {
             return; // a run like this with a lower cost, after which none of the times below is new
         }
         let back = network.opposite(heading).map(usize::from);
-        let bound = self.bound_at_rest(network, node);
+        let first = self.entry(node, AT_REST, 0);
+        let driving = self.driving(network, node);
         for (before, &turn) in model.turns_to(heading).iter().enumerate() {
-            let (index, cost) = (first + before, cost + turn);
+            let (entry, cost) = (first + before, cost + turn);
             let straight = before == usize::from(heading) || back == Some(before);
-            if self.comes(network, node, index, before as u8, straight) {
-                self.queue.improve(index * ENTRIES, cost, cost + bound);
+            if self.comes(network, node, before as u8, straight) {
+                let mut total = cost + driving;
+                if TURNS {
+                    total += self.turns.bound(network, node, before as u8);
+                }
+                self.queue.improve(entry, cost, total);
             } else {
-                self.queue.note(index * ENTRIES + STRAIGHT, cost);
+                self.queue.note(entry + STRAIGHT * self.headings, cost);
             }
         }
     }
 
     /// Whether a robot on a quickest way may come to rest at a waypoint with the heading `before`
     /// and continue with another: unless it comes by elevator, a robot does not stop to go
-    /// `straight` on or back, nor arrive in a direction that no edge has. `index` is that of
-    /// (waypoint, heading).
+    /// `straight` on or back, nor arrive in a direction that no edge has.
     #[inline]
-    fn comes(
-        &self,
-        network: &Network,
-        node: u32,
-        index: usize,
-        before: u8,
-        straight: bool,
-    ) -> bool {
-        match self.arrivals[index] {
+    fn comes(&self, network: &Network, node: u32, before: u8, straight: bool) -> bool {
+        match self.arrivals[network.index(node, before)] {
             Arrival::Never => false,
             Arrival::OverElevator => true,
             _ if straight => false,
@@ -347,16 +372,21 @@ impl Backward {
         }
     }
 
-    fn offer(&mut self, network: &Network, node: u32, heading: u8, rolling: usize, cost: u32) {
-        let state = network.index(node, heading) * ENTRIES + rolling;
-        if cost < self.queue.best(state) {
-            let bound = if rolling == ROLLING {
-                self.bound_rolling(network, node, heading)
-            } else {
-                self.bound_at_rest(network, node)
-            };
-            let total = cost + bound;
-            self.queue.improve(state, cost, total);
+    #[inline]
+    fn offer_rolling<const TURNS: bool>(
+        &mut self,
+        network: &Network,
+        node: u32,
+        heading: u8,
+        cost: u32,
+    ) {
+        let entry = self.entry(node, ROLLING, heading);
+        if cost < self.queue.best(entry) {
+            let mut total = cost + self.bound_rolling(network, node, heading);
+            if TURNS {
+                total += self.turns.bound(network, node, heading);
+            }
+            self.queue.improve(entry, cost, total);
         }
     }
 }
@@ -367,34 +397,13 @@ fn dearer(cost: u32, extra: u32) -> u32 {
     if cost < CEILING { cost.saturating_add(extra).min(CEILING) } else { cost }
 }
 
-/// Prepares bounds of the times from a waypoint: a way covers its extent in x and in y by at least
-/// one run each. Without a waypoint they are 0.
-fn bounds(
-    network: &Network,
-    model: &Model,
-    from: Option<u32>,
-    columns: &mut Vec<Bound>,
-    rows: &mut Vec<Bound>,
-) {
-    let position = from.map(|node| network.position(node));
-    let along = |places: &[f64], at: Option<f64>, into: &mut Vec<Bound>| {
-        into.clear();
-        into.extend(places.iter().map(|place| match at {
-            Some(at) => Bound::of(model, (place - at).abs()),
-            None => Bound::default(),
-        }));
-    };
-    along(&network.columns, position.map(|p| p.0), columns);
-    along(&network.rows, position.map(|p| p.1), rows);
-}
-
 fn arrival(network: &Network, node: u32, heading: u8) -> Arrival {
-    let before = network.behind(node, heading);
+    let mut before = network.behind(node, heading).peekable();
     if network.is_elevator(node) {
         Arrival::OverElevator
-    } else if before.is_empty() {
+    } else if before.peek().is_none() {
         Arrival::Never
-    } else if before.iter().all(|&(from, _)| network.storage[from as usize]) {
+    } else if before.all(|(from, _)| network.storage[from as usize]) {
         Arrival::FromStorage
     } else {
         Arrival::FromAisle
