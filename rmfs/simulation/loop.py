@@ -7,6 +7,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING
 
 from rmfs.simulation.agenda import LAST, us_at
+from rmfs.simulation.collection import fewer_collections
 from rmfs.simulation.decision import Decision
 from rmfs.traffic import EventKind
 
@@ -180,7 +181,8 @@ class Loop:
             return self.decision
         started_s = perf_counter()
         try:
-            return self._go_on_until(end_us, limit)
+            with fewer_collections():
+                return self._go_on_until(end_us, limit)
         finally:
             self.wall_s += perf_counter() - started_s
 
