@@ -94,13 +94,14 @@ export async function startForm(root: HTMLElement, chosen: Record<string, string
       h(
         "div",
         { className: "begin" },
-        preview.root,
         labelled("seed", seed),
         labelled("simulated seconds per second", speed),
         labelled("folder below results/", out),
         labelled("write its trace", trace),
         start,
         message,
+        // last: its height changes when it answers, which must move nothing that is clicked
+        preview.root,
       ),
     ),
   );
