@@ -92,7 +92,7 @@ def levels(frame: pd.DataFrame) -> Table:
 
 
 def gains(frame: pd.DataFrame) -> Table:
-    """Return the changes by guidance, paired by seed, by site and guidance."""
+    """Return the effects of guidance, paired by seed, with a row for each site and guidance."""
     rows: Rows = {}
     p_units, p_delay = ("p of units", "Holm"), ("p of delay", "Holm")
     for site, of in sites(frame):
@@ -158,7 +158,7 @@ def random_trips(study: Study) -> pd.DataFrame:
 
 
 def trip_gains(frame: pd.DataFrame) -> Table:
-    """Return trips per hour, and their changes by guidance, paired by seed.
+    """Return trips per hour, and the effects of guidance on them, paired by seed.
 
     Parameters
     ----------

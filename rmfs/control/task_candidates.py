@@ -132,7 +132,7 @@ def tasks(
 
 
 def lacks_tasks(view: View) -> bool:
-    """Return whether TA has at most to decide which idle pods to move.
+    """Return whether TA has nothing to decide, except perhaps which idle pods to move.
 
     This is so if no robot needs a task, and none at rest could work for a station or store its pod.
     """

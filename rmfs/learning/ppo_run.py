@@ -107,7 +107,7 @@ class Rate:
         self._reward, self._time_s = 0.0, 0.0
 
     def less_mean(self, reward: float, elapsed_s: float) -> float:
-        """Return a reward minus the mean reward of the time over which it was collected."""
+        """Return a reward minus the product of elapsed time and mean reward per second."""
         kept = exp(-elapsed_s / self.MEMORY_S)
         self._reward = kept * self._reward + reward
         self._time_s = kept * self._time_s + elapsed_s

@@ -58,7 +58,7 @@ def limits(method: str, most: float) -> list[float]:
 def points(
     decision: Decision, method: str, most: float, seeds: Sequence[int] = (0,)
 ) -> Iterator[dict[str, Any]]:
-    """Solve a question with each limit of `limits` and each seed, and yield a row for each run.
+    """Solve a question with each limit and each seed, and yield a row for each run.
 
     Parameters
     ----------

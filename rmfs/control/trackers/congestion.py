@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from rmfs.control.trackers import Tracker
 from rmfs.control.trackers.regions import Density, Regions
@@ -185,6 +184,8 @@ def _spacing_m(layout: Layout) -> float:
 
 def _table(path: Path, waypoints: int) -> NDArray[np.float64]:
     """Read passages and waiting time per waypoint from a table `heat`, shape (2, N)."""
+    import pandas as pd
+
     names = ["waypoint", "visits", "waiting_s"]
     try:
         if path.suffix == ".parquet":

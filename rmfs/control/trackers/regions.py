@@ -1,4 +1,4 @@
-"""Square regions of the floor, and sums along straight trips through them."""
+"""Square regions of the floor, and sums of their values along trips through them."""
 
 from __future__ import annotations
 

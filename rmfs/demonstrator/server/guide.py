@@ -113,7 +113,8 @@ class Guide:
     def forget_strayed(self) -> None:
         """Forget which robots have strayed from their paths.
 
-        Each of them reports this again if it reads a tag off its path during a route order.
+        A robot reports again that it has strayed if it reads a tag outside its path during a route
+        order.
         """
         for robot in self.robots.values():
             robot.astray = None

@@ -114,7 +114,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             yield self._to_rest(robot)
 
     def answered(self, call: Call) -> Iterator[Decision]:
-        """Store the plan and carry out what is due, but do not yet send other robots to rest."""
+        """Store the plan and carry out what is due; no robot is sent to rest yet."""
         memo: snapshot.Memo = call.ask.memo
         if call.solution is not None:
             self._plan.take(call.solution, memo, call)

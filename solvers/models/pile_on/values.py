@@ -113,7 +113,8 @@ def uncovered(data: PileOn, values: Assignment) -> Integers:
     data
         The input.
     values
-        The decision. If it takes more units than the pods hold, the result exceeds the shortage.
+        The decision. Units that it takes from pods beyond what these hold are counted as well, so
+        the result can exceed `data.shortage`.
     """
     have = data.surplus + called_supply(data, values)
     return np.maximum(data.shortage + demand(data, values) - have, 0)

@@ -66,7 +66,8 @@ class Weights:
         Penalty per unit of open demand (of orders already at a station) that no pod covers. Default
         1000.
     open_line
-        Penalty per line of a newly placed order if the line is not covered now (`Variant.LATER`).
+        Penalty per line that is not covered now, of an order that gets a slot in this decision
+        (`Variant.LATER`).
         Default 100.
     line
         Reward per line covered, whatever its order. Default 0.

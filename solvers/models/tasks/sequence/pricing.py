@@ -13,7 +13,7 @@ cost allows tasks to be repeated and rounds times down to steps, so it is never 
 route is dropped if another partial route to the same task is no later, costs no more, and has used
 no task (and no remembered place) that the dropped route has not used: every completion of the
 dropped route also completes the other, at no higher cost. Between two tasks, a place is ignored if
-the way via another place, one that is not remembered, is no longer and costs no more.
+the way via some other place that is not remembered takes and costs at most as much.
 
 All prices and costs are integers, in parts of a tick (1 tick = 1 ms = 1024 parts), so their sums
 are exact.
