@@ -194,6 +194,8 @@ def plan(
     """
     path = design_file.locate(name_or_path)
     _, table = design_file.read(path)
+    if replications is not None and table.get("stages"):
+        raise InputError(f"{path}: stages: state their own seeds; replications cannot be set")
     if base or replications is not None:
         table = {**table, "base": {**table["base"], **(base or {})}}
         seeds = table.get("seeds")

@@ -171,7 +171,8 @@ class Checks(BaseCallback):
         super().__init__()
         self._began_s, self._cpu_began_s = perf_counter(), process_time()
         self._task, self._candidates, self._told = task, candidates, told
-        self._due = {round(rollouts * (number + 1) / checks) for number in range(checks)}
+        # the value at the start is known: with few rollouts, there are fewer checks
+        self._due = {round(rollouts * (number + 1) / checks) for number in range(checks)} - {0}
         self._done = 0
         self.best, self.rows = first, list[tuple[int, float, float, float]]()
         self.value = self.start_value = mean_value(task, first)

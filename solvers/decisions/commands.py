@@ -26,7 +26,9 @@ Files = Annotated[
     typer.Argument(metavar="FILE...", help="Decision files (rmfs-decision/1), or folders of them."),
 ]
 WORK = "Limit of work: deterministic seconds; nodes of HiGHS; steps of a local search."
-Seed = Annotated[int, typer.Option(min=0, help="Seed of the method.")]
+Seed = Annotated[
+    int | None, typer.Option(min=0, help="Seed of the method. [default: 0]", show_default=False)
+]
 Method = Annotated[
     str,
     typer.Option(
@@ -42,7 +44,7 @@ def solve(
     files: Files,
     method: Method = "",
     work: Annotated[float | None, typer.Option(min=0.0, help=WORK, show_default=False)] = None,
-    seed: Seed = 0,
+    seed: Seed = None,
     with_: Annotated[
         str,
         typer.Option(

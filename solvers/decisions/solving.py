@@ -65,7 +65,7 @@ def solve(
     method: str = "",
     *,
     work: float | None = None,
-    seed: int = 0,
+    seed: int | None = None,
     start: Found | None = None,
     guard_s: float | None = None,
     where: str = "",
@@ -83,7 +83,7 @@ def solve(
     work
         Limit of work in the unit of the method. Default: none.
     seed
-        Seed of the method. Default 0.
+        Seed of the method. Default: 0.
     start
         Answer to start from. Default: none.
     guard_s
@@ -94,22 +94,28 @@ def solve(
     Raises
     ------
     InputError
-        If there is no such method, or the model rejects the question.
+        If there is no such method, if the model rejects the question, or if `asked` is combined
+        with `work`, `seed` or `start`.
     WallGuardError
         If the method took longer than `guard_s`.
     """
     name = where or decision.name
-    plain = work is None and seed == 0 and start is None
+    plain = work is None and seed is None and start is None
     if not method:
         method = AS_ASKED if decision.asked.get("by") and plain else methods(decision.family)[0]
     began = perf_counter()
     if method == AS_ASKED:
+        if not plain:
+            raise InputError(
+                f"{name}: method {AS_ASKED}: repeats the solution of the run and takes no limit, "
+                "seed or start; name another method"
+            )
         found = asked_again(decision, name)
         by = {**found.by, "method": method}
         answer = Found(found.values, found.objective, found.bound, by)
     else:
         limits = replace(limits_of(method, work), wall_guard_s=guard_s)
-        answer = _by_model(decision, method, limits, seed, start, name)
+        answer = _by_model(decision, method, limits, seed or 0, start, name)
         answer = Found(
             answer.values, answer.objective, answer.bound, {**answer.by, "work_limit": work}
         )

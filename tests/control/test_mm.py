@@ -167,3 +167,14 @@ class TestFile:
                 **{problem: {"name": name} for problem, name in BRUTE.items()},
                 mm={"name": "random", "alternatives": [{"psa": "nearest"}]},
             )
+
+    def test_alternatives_must_go_with_what_others_have_installed(self) -> None:
+        """RPS nearest waits for ROA, and ROA same-pod for RPS."""
+        roa = {"name": "random"}
+        drawn = [{"rps": "nearest"}, {"roa": "same-pod"}]
+        rules(roa=roa, mm={"name": "random", "alternatives": drawn[:1]})
+        with pytest.raises(InputError, match=r"mm\.alternatives\.0 after 1: .* neither would ever"):
+            rules(roa=roa, mm={"name": "random", "alternatives": drawn})
+        drawn[1]["rps"] = "random"
+        drawn[0]["roa"] = "random"
+        rules(roa=roa, mm={"name": "random", "alternatives": drawn})

@@ -14,6 +14,7 @@ from rmfs.control.ta.brute_force import BruteForce
 from rmfs.control.ta.constant_ratio import ConstantRatio
 from rmfs.control.ta.random import RandomTasks
 from rmfs.control.ta.swarm import Swarm
+from rmfs.control.trackers.congestion import Congestion
 
 
 @pytest.fixture
@@ -181,6 +182,25 @@ class TestBruteForce:
         near = situation.make(BruteForce, queue_cost_s=2.0)._best(robot, Answers())
         far = situation.make(BruteForce, queue_cost_s=2.2)._best(robot, Answers())
         assert (near.station, far.station) == (0, 1)
+
+    def test_congestion_delays_the_carried_pod_like_any_other(self, monkeypatch) -> None:
+        """Pod 1 is carried and the only one with work; on each trip, 50 s of delay are expected."""
+        monkeypatch.setattr(Congestion, "on_trips", lambda *given: np.full(len(given[2]), 50.0))
+        situation = Situation(small_layout(places=8, pods=4, robots=4))
+        nothing = np.zeros(situation.view.layout.waypoints)
+        situation.traffic.heat = lambda: {"visits": nothing, "waiting_s": nothing}
+        served(situation)
+        situation.stock(1, s0=5)
+        situation.assigned(s0=1)
+        robot = situation.world.robots[0]
+        answers = Answers()
+        answers.pps = situation.make(Pps)
+        plain, careful = (
+            situation.make(BruteForce, congestion=weight)._best(robot, answers)
+            for weight in (0.0, 2.0)
+        )
+        assert plain.pod == careful.pod == 1
+        assert careful.seconds == plain.seconds + 100.0
 
     def test_of_equal_stations_the_first(self) -> None:
         """Pod 5 is 15 s from the stations at x = 0 and 10, which both want its SKU: station 0. A

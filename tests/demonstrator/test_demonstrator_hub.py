@@ -7,7 +7,7 @@ import time
 import pytest
 
 from rmfs.demonstrator.robot.client import Link, TcpWire
-from rmfs.demonstrator.robot.protocol import HELLO, LARGEST, ROBOT, pack
+from rmfs.demonstrator.robot.protocol import HELLO, LARGEST, ROBOT, ProtocolError, pack
 from rmfs.demonstrator.server import hub as hubs
 from rmfs.demonstrator.server.hub import Hub
 
@@ -227,6 +227,15 @@ def test_more_connections_than_allowed_are_refused(hub, monkeypatch):
     begun(hub, link)
     assert stranger(hub, b"")
     still_works(hub, link)
+
+
+def test_a_connection_that_cannot_be_greeted_is_refused(hub, monkeypatch):
+    def fail(*_):
+        raise ProtocolError("not now")
+
+    monkeypatch.setattr(hubs, "_Connection", fail)
+    assert stranger(hub, b"")
+    assert hub.refused == 1
 
 
 def test_a_message_of_the_session_key_alone_is_no_hello(hub):

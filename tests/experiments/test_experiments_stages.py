@@ -7,6 +7,7 @@ import pytest
 from stand_in import Inline, footprint
 
 from rmfs import experiments
+from rmfs.errors import InputError
 from rmfs.experiments.design.stages import schedule
 from rmfs.experiments.running.driver import drive
 from rmfs.experiments.running.job import Outcome
@@ -102,3 +103,11 @@ def test_failed_runs_do_not_hold_up_a_stage(design, tmp_path):
         done = drive(plan, store, Inline(do=work))
         assert done.failed
         assert (experiments.load(store.folder)["replication"] == 100).sum() == 1
+
+
+def test_replications_of_stages_are_not_replaced(design):
+    """Each stage states its own seeds."""
+    path = design(seeds=None, stages=[{"name": "all", "seeds": [1, 2]}])
+    assert experiments.plan(path).design.stages
+    with pytest.raises(InputError, match=r"design\.toml: stages: .* replications cannot be set"):
+        experiments.plan(path, replications=1)

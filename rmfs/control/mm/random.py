@@ -65,13 +65,15 @@ class RandomExchange(MethodManagement[RandomParameters]):
 
     @classmethod
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
-        """Check that each alternative is compatible with the initial rules of the other problems.
+        """Check that each alternative is compatible with the rules of the other problems.
+
+        These are the initial rules, or those that another alternative has installed.
 
         Raises
         ------
         InputError
-            If an alternative is not compatible with them, if it contains a rule that decides
-            several problems, or if it contains a dummy (which leaves its problem to another rule).
+            If an alternative is not compatible with them; if it contains a rule that decides
+            several problems; or if it contains a dummy (which leaves its problem to another rule).
         """
         given = choices[Problem.MM].parameters
         assert isinstance(given, RandomParameters)
@@ -86,3 +88,7 @@ class RandomExchange(MethodManagement[RandomParameters]):
                     )
             new = {choice.problem: choice for choice in entry.choices()}
             check_together({**choices, **new}, where)
+            # what another draw has installed stays for the problems that this one leaves out
+            for other, drawn in enumerate(given.alternatives):
+                left = {choice.problem: choice for choice in drawn.choices()}
+                check_together({**choices, **left, **new}, f"{where} after {other}")

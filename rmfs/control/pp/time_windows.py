@@ -22,7 +22,7 @@ class TimeWindowsParameters(Parameters):
     swift: bool = False
     """Whether to use faster searches; robots may then arrive slightly later than necessary."""
     swift_from: int = pydantic.Field(300, ge=0)
-    """Mean number of labels per plan above which the run changes to faster searches even if `swift`
+    """Mean number of labels per plan from which the run changes to faster searches even if `swift`
     is false; 0: never."""
     guidance: Annotated[str, pydantic.Field(min_length=1)] | None = None
     """File with extra costs of edges, written by `rmfs traffic guide`: plans minimise arrival time

@@ -152,7 +152,9 @@ class BruteForce(Solo[BruteForceParameters]):
             to_station = view.travel.to(waypoint, loaded=True)
             wait_s = self.parameters.queue_cost_s * len(station.tasks) ** 2
             if robot.pod >= 0 and consult.serves(robot.pod, index):
-                yield _Job(max(to_station.item(robot.waypoint), wait_s), index, robot.pod)
+                here = np.array([robot.waypoint])
+                bring_s = to_station[here] + self.parameters.delay_s(view, waypoint, here)
+                yield _Job(max(bring_s.item(), wait_s), index, robot.pod)
             pods = self.pods_for(robot, index)
             if len(pods):
                 at = view.storage.pod_waypoint[pods]

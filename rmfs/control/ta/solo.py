@@ -83,7 +83,7 @@ class Solo(TaskAllocation[P]):
 
     def to_rest(self, robot: Robot) -> Rest:
         """Return the task of resting where `rest_place` says or, if it returns -1, on the spot."""
-        place = self._rest.choose(robot)
+        place = self.rest_place(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def park(self, robot: Robot, consult: Consult) -> Iterator[Park]:

@@ -198,7 +198,7 @@ class StationTeams(TaskAllocation[P]):
 
     def _to_rest(self, robot: Robot) -> Rest:
         self.count(robot, -1)
-        place = self._rest.choose(robot)
+        place = self.rest_place(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def _wake(self, consult: Consult) -> Iterator[TaskDecision]:

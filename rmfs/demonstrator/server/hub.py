@@ -174,6 +174,7 @@ class Hub:
         try:
             connection = _Connection(sock, f"{peer[0]}:{peer[1]}", self._secret)
         except ProtocolError:
+            self.refused += 1
             sock.close()
             return
         self._connections[sock.fileno()] = connection

@@ -63,11 +63,8 @@ class ExplicitReplenishmentStation(Strict):
     )
     radius_m: Positive = Field(description="radius of the station, m")
     capacity: Space = Field(
-        description="maximum total size, in space units, of the bundles assigned to "
-        "the "
-        "station "
-        "at "
-        "any time"
+        description="maximum total size, in space units, of the bundles assigned to the station "
+        "at any time"
     )
     bundle_transfer_s: Seconds = Field(
         description="time in s for which a bundle occupies robot and station"

@@ -58,6 +58,9 @@ def test_methods_limits_and_seeds_can_be_chosen(
     assert "method simplex: unknown for sequencing; valid: cp_sat, dynamic" in complaint(capsys)
     assert main(["decisions", "solve", "nowhere.json"]) == 2
     assert "nowhere.json: no such file" in complaint(capsys)
+    for option in (["--seed", "0"], ["--work", "3"]):
+        assert main(["decisions", "solve", str(one), "--method", "asked", *option]) == 2
+        assert "takes no limit, seed or start" in complaint(capsys)
 
 
 def spoil_value(raw: dict[str, Any]) -> None:
