@@ -3,7 +3,7 @@
 The design `congestion` lets PSA, and TA by linear assignment, add the delay expected from
 congestion to travel times, at two sites with quick stations, where robots are scarce or the aisles
 full. The study publishes the change of units per hour, of the delay per trip and of the distance
-per unit, paired by seed. It also publishes the share of driving time that is delay, which is the
+per unit, paired by seed. It also publishes the share of trip time that is delay, which is the
 most that such decisions could save, and the share of their time for which robots have no task.
 """
 
@@ -24,7 +24,7 @@ NOTHING = "nothing"
 COLUMNS = (
     "units_per_h",
     "trip_delay_mean_s",
-    "trip_time_mean_s",
+    "trip_delay_share",
     "distance_per_unit_m",
     "robot_idle_share",
 )
@@ -52,11 +52,11 @@ def levels(frame: pd.DataFrame) -> Table:
             if not arm.endswith(NOTHING):
                 continue
             row: dict[tuple[str, str], float] = {}
-            delay_s, trip_s = of["trip_delay_mean_s"][arm], of["trip_time_mean_s"][arm]
+            delay_s, share = of["trip_delay_mean_s"][arm], of["trip_delay_share"][arm]
             for name, values in (
                 ("units per hour", of["units_per_h"][arm]),
                 ("delay per trip, s", delay_s),
-                ("delay, % of driving time", 100 * delay_s / trip_s),
+                ("delay, % of trip time", 100 * share),
                 ("robots without a task, %", 100 * of["robot_idle_share"][arm]),
             ):
                 found = interval(values)

@@ -3,7 +3,7 @@
 The design `guidance` runs sites with quick stations at normal and at high density of robots,
 without guidance and with several files of guidance. The study publishes the changes of units per
 hour, of the delay per trip and of the distance per unit, paired by seed, with p values corrected by
-Holm's method. It also publishes the share of driving time that is delay, and the share of their
+Holm's method. It also publishes the share of trip time that is delay, and the share of their
 time for which robots have no task: guidance can at most remove the delay, and shorter trips do not
 help where robots have nothing to do. In random trips without orders, with the same layouts, robots
 and guidance, every robot always has a trip: the study publishes the change of trips per hour.
@@ -36,7 +36,7 @@ NOTHING = "none"
 COLUMNS = (
     "units_per_h",
     "trip_delay_mean_s",
-    "trip_time_mean_s",
+    "trip_delay_share",
     "distance_per_unit_m",
     "robot_idle_share",
 )
@@ -74,12 +74,12 @@ def levels(frame: pd.DataFrame) -> Table:
     """Return units per hour and delay without guidance, by site."""
     rows: Rows = {}
     for site, of in sites(frame):
-        delay_s, trip_s = of["trip_delay_mean_s"][NOTHING], of["trip_time_mean_s"][NOTHING]
+        delay_s, share = of["trip_delay_mean_s"][NOTHING], of["trip_delay_share"][NOTHING]
         row: dict[tuple[str, str], float] = {}
         for name, values in (
             ("units per hour", of["units_per_h"][NOTHING]),
             ("delay per trip, s", delay_s),
-            ("delay, % of driving time", 100 * delay_s / trip_s),
+            ("delay, % of trip time", 100 * share),
             ("robots without a task, %", 100 * of["robot_idle_share"][NOTHING]),
         ):
             found = interval(values)

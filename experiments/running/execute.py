@@ -38,6 +38,7 @@ def execute(job: Job) -> Outcome:
             error=f"{type(error).__name__}: {line}",
             traceback=traceback.format_exc(),
             elapsed_s=time.perf_counter() - begun,
+            cpu_s=time.process_time() - begun_cpu,
             host=host,
         )
     footprint = made.pop("footprint")

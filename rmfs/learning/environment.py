@@ -309,7 +309,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         }
         if options is not None:
             info["problem"] = str(options.decision.problem)
-            info["kind"] = options.decision.kind
+            info["kind"] = options.kind
         elif self._with_footprint:
             info["footprint"] = run.result().footprint
         return info

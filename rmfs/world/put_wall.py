@@ -135,7 +135,7 @@ class PutWall:
         self.orders_packed = 0
 
     def has_room(self, order: int, *, last: bool) -> bool:
-        """Whether the next tote of an order would find room.
+        """Whether the next tote of an order would find room; a tote that needs no slot always does.
 
         Parameters
         ----------
@@ -144,7 +144,9 @@ class PutWall:
         last
             Whether this tote is the last of the order.
         """
-        return self.slots is None or self.kept + self._more(order, last) <= self.slots
+        more = self._more(order, last)
+        # totes carried by hand may have filled the wall beyond its slots
+        return self.slots is None or more == 0 or self.kept + more <= self.slots
 
     def release(self, order: Order, station: int, now_s: float, *, last: bool) -> Tote:
         """Create a tote that leaves its pick station, and reserve a slot if it needs one.

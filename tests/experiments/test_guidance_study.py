@@ -29,7 +29,7 @@ def runs() -> pd.DataFrame:
                     "replication": seed,
                     "units_per_h": units * factor,
                     "trip_delay_mean_s": delay_s,
-                    "trip_time_mean_s": 20.0,
+                    "trip_delay_share": delay_s / 20.0,
                     "distance_per_unit_m": 30.0 / factor,
                     "robot_idle_share": 0.25,
                 }
@@ -41,7 +41,7 @@ def test_levels_are_those_without_guidance() -> None:
     frame = levels(runs()).frame
     assert list(frame.index) == ["hall, 8 robots", "street, 9 robots"]
     assert frame["units per hour", "mean"].tolist() == [110.0, 110.0]
-    assert frame["delay, % of driving time", "mean"].tolist() == [10.0, 15.0]
+    assert frame["delay, % of trip time", "mean"].tolist() == [10.0, 15.0]
     assert frame["robots without a task, %", "mean"].tolist() == [25.0, 25.0]
 
 

@@ -58,7 +58,7 @@ def played(env: DecisionEnv, scorers: dict[str, Scorer], seed: int) -> tuple[Any
     seen, info = env.reset(seed=seed)
     steps = 0
     while "footprint" not in info:
-        scorer = scorers[info["kind"] if info["kind"] != "turn" else info["problem"]]
+        scorer = scorers[info["kind"]]
         whole = seen["global"][: len(GLOBAL_FEATURES)]
         scores = scorer.scores(seen["candidates"][:, places[scorer.kind]], whole)
         declining = scorer.declining(whole)

@@ -160,7 +160,7 @@ def test_a_held_tote_keeps_its_slot(runs):
     full, room = runs["by hand"].footprint, runs["room"].footprint
     assert full["station_blocked_share"] > 0.3
     assert room["station_blocked_share"] == 0
-    assert full["units_per_h"] < 0.8 * room["units_per_h"]
+    assert full["units_per_h"] < 0.9 * room["units_per_h"]
 
 
 @pytest.mark.parametrize("name", ["room", "full", "conveyor", "at once", "all packed"])

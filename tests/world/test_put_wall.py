@@ -56,3 +56,13 @@ def test_wrong_counts_are_found():
     wall.kept = 0
     with pytest.raises(AssertionError, match="slots of the put wall"):
         wall.verify()
+
+
+def test_the_last_tote_has_room_even_if_the_wall_is_overfull() -> None:
+    """Totes carried by hand fill the wall beyond its one slot; the last tote needs none."""
+    wall = PutWall(1, slot_per_part=False)
+    for order in (A, B):
+        wall.release(order, 0, 0.0, last=False)
+    assert wall.kept == 2
+    assert not wall.has_room(2, last=False)
+    assert all(wall.has_room(number, last=True) for number in (0, 1, 2))
