@@ -1,8 +1,10 @@
 """Experiments: designs, runners, tables and statistics.
 
-plan = experiments.plan("fleet-size")
-experiments.run(plan, "results/fleet-size")
-frame = experiments.load("results/fleet-size")
+Example::
+
+    plan = experiments.plan("fleet-size")
+    experiments.run(plan, "results/fleet-size")
+    frame = experiments.load("results/fleet-size")
 """
 
 from typing import TYPE_CHECKING, Any

@@ -33,7 +33,7 @@ def by_factors(table: Table, plan: Plan) -> Table:
 
 
 def across(table: Table, plan: Plan, factor: str) -> Table:
-    """Arrange the levels of a factor as columns, and those of the other factors as rows.
+    """Arrange the levels of a factor as columns, and combinations of the other factors as rows.
 
     Parameters
     ----------
@@ -43,7 +43,8 @@ def across(table: Table, plan: Plan, factor: str) -> Table:
     Raises
     ------
     InputError
-        If there is no such factor or no other factor, or the factors do not distinguish the arms.
+        If the factor does not exist or has only one level in the table, if no other factor has
+        several levels, or if the factors do not distinguish the arms.
     """
     levels = _levels(table, plan)
     name = plan.short_names.get(factor, factor)
@@ -71,7 +72,7 @@ def across(table: Table, plan: Plan, factor: str) -> Table:
 
 
 def _levels(table: Table, plan: Plan) -> pd.DataFrame:
-    """Return the levels of the factors that differ, as text, a row per arm of a table."""
+    """Return the factors with several levels in a table: the level as text, one row per arm."""
     short = plan.short_names
     rows = [
         {short[factor]: _text(level) for factor, level in plan.arm(str(arm)).levels.items()}
@@ -89,7 +90,7 @@ def _text(level: object) -> str:
 
 
 def _told(counts: list[pd.Series]) -> str:
-    """Say how many runs a cell stands for."""
+    """Return a sentence on the number of seeds per cell; empty if there are no counts."""
     if not counts:
         return ""
     least, most = int(counts[0].min()), int(counts[0].max())

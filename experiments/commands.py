@@ -1,6 +1,6 @@
 """The commands of `rmfs experiment`: plan, run, status, table, plot and others.
 
-These functions raise `InputError`; the command line prints it as one line and exits with code 2.
+If a function raises `InputError`, the command line prints its message and exits with code 2.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ FAILED = 1
 def list_experiments(
     folder: Annotated[Path, typer.Argument(help="Folder of results.", show_default=True)] = RESULTS,
 ) -> None:
-    """List the shipped designs, and the experiments with results."""
+    """List the shipped designs, and the experiments whose results are in a folder."""
     from rich import box
     from rich.table import Table as RichTable
 
@@ -81,7 +81,7 @@ def plan(
 ) -> None:
     """Check a design: print its errors or, if there are none, its size and the estimated time.
 
-    The size consists of the factors with their levels, and the numbers of arms and runs.
+    The size is given by the factors with their levels, and by the numbers of arms and runs.
     """
     from rmfs.experiments.complete import may_grow
     from rmfs.experiments.design.stages import schedule
@@ -139,9 +139,10 @@ def run(
         ),
     ] = None,
 ) -> None:
-    """Make all runs of a design that are not finished yet; can be interrupted and repeated.
+    """Make all runs of a design that are not finished yet.
 
-    Exits with code 1 if runs failed; all others are completed nevertheless.
+    The command can be interrupted and repeated. If runs fail, all others are made nevertheless, and
+    the exit code is 1.
     """
     from rmfs.experiments.running import run as run_plan
     from rmfs.experiments.running.progress import watching
@@ -162,7 +163,7 @@ def run(
 def status(design: Made, out: Out = None) -> None:
     """Show the progress of an experiment, and its failures.
 
-    Exits with code 1 if runs failed.
+    The exit code is 1 if runs failed.
     """
     from rmfs.experiments.results import assigned, failed
     from rmfs.experiments.running.driver import progress_of

@@ -1,4 +1,4 @@
-"""Comparison of runs, arms or tables: differences of inputs and outputs."""
+"""Comparison of runs, arms or tables: differences in their inputs and outputs."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ class Side:
     Attributes
     ----------
     name
-        Name as specified by the user.
+        Path of the run, experiment or table; for an arm, followed by `#` and the name of the arm.
     rows
         Footprints, one row per seed.
     inputs
-        Known inputs as dotted keys and values.
+        Known inputs: dotted keys and their values.
     note
         Description of missing runs of the experiment; empty if none are missing, or if the side
         does not belong to an experiment.
@@ -66,15 +66,15 @@ class Comparison:
     Attributes
     ----------
     inputs
-        Differing inputs: `key`, `baseline`, `other`.
+        Inputs that differ, with the columns `key`, `baseline` and `other`.
     outputs
         One row per footprint column: `baseline` and `other` (means over the common seeds or, if
         there are none, over all seeds), `difference` (`other` minus `baseline`) with the ends
-        `low` and `high` of its interval, `relative` (difference divided by baseline), and the
-        p value `p`. Interval and `p` are nan if only one seed is common or, with none in common, if
-        a side has only one seed.
+        `low` and `high` of its confidence interval, `relative` (difference divided by baseline),
+        and the p value `p`. The interval and `p` are nan if there are too few seeds: only one
+        common seed, or no common seed and a side with a single seed.
     pairs
-        Number of seeds in common; 0 if the samples were treated as independent.
+        Number of common seeds; if it is 0, the two samples were treated as independent.
     identical
         Whether both sides have the same seeds and equal values in all reproducible columns.
     """
@@ -93,15 +93,15 @@ class Comparison:
 
 
 def compare(sources: Sequence[str | Path], *, confidence: float = 0.95) -> list[Comparison]:
-    """Compare every further source with the first, or the arms of a single source.
+    """Compare all sources with the first source, or all arms of a single source with its first arm.
 
     Parameters
     ----------
     sources
-        Run folders, folders of experiments, arms of these (`FOLDER#ARM`), or .csv and .parquet
-        tables of footprints. If there is a single source, its first arm is compared with each of
-        its other arms. If there are several sources and any of them has several arms, arms of the
-        same name are compared.
+        Run folders, folders of experiments, .csv or .parquet tables of footprints, or single arms
+        of experiments or tables (`PATH#ARM`). If there is a single source, each of its other arms
+        is compared with its first arm. If there are several sources and any of them has several
+        arms, arms of the same name are compared.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def _by_seed(side: Side) -> pd.DataFrame:
 
 
 def _text(side: Side, columns: list[str]) -> str:
-    """Return the reproducible columns as CSV; names of inputs are not results."""
+    """Return columns as CSV, without the names of inputs, which are not results."""
     chosen = [c for c in columns if c not in ("layout", "scenario", "controllers")]
     return side.rows.sort_values("seed")[chosen].to_csv(index=False)
 
@@ -181,7 +181,7 @@ def _differs(first: Any, second: Any) -> bool:
 
 
 def _sides(source: str) -> list[Side]:
-    """Read one source: one side for each of its arms."""
+    """Read a source and return one side for each of its arms."""
     place, _, arm = source.partition(ARM_SIGN)
     path = Path(place)
     if (path / PARAMETERS).is_file():
@@ -244,7 +244,7 @@ def _table_sides(path: Path, arm: str) -> list[Side]:
 
 
 def _constant(frame: pd.DataFrame) -> dict[str, Any]:
-    """Return what is the same in all rows and is no result: inputs and factors."""
+    """Return the inputs and factors that have the same value in all rows."""
     inputs = ("layout", "scenario", "controllers", "warmup_s", "duration_s", "robots", "pods")
     columns = [c for c in frame if c in inputs or "." in str(c)]
     return {str(c): _plain(frame[c].iloc[0]) for c in columns if len(frame[c].unique()) == 1}
@@ -255,7 +255,7 @@ def _plain(value: Any) -> Any:
 
 
 def _flat(value: Any, before: str = "") -> list[tuple[str, Any]]:
-    """Return nested tables as dotted keys."""
+    """Return the values of nested tables with their dotted keys."""
     if not isinstance(value, dict):
         return [(before, value)]
     found = []

@@ -1,4 +1,4 @@
-"""What `rmfs compare` prints."""
+"""The output of the command `rmfs compare`."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_RELATIVE = 10.0
 
 
 def print_comparisons(found: list[Comparison], columns: list[str], *, everything: bool) -> None:
-    """Print what `rmfs compare` found."""
+    """Print comparisons: the inputs that differ, and the chosen columns of the outputs."""
     from rmfs.experiments.compare import chosen_columns
 
     console = open_console()
@@ -91,7 +91,7 @@ def _how(one: Comparison) -> str:
 
 
 def _number(value: float, scale: float = 1.0) -> str:
-    """Write a number; what is only rounding at the size of the numbers compared is 0."""
+    """Format a number; a rounding error, relative to `scale`, is shown as 0."""
     if value != value:
         return "-"
     size = abs(value)
@@ -101,7 +101,7 @@ def _number(value: float, scale: float = 1.0) -> str:
 
 
 def _relative(difference: float, baseline: float, scale: float) -> str:
-    """Write a difference in per cent of the baseline, where that says something."""
+    """Format a difference in percent of the baseline; "-" if it is unknown or too large."""
     if difference != difference or abs(difference) > MOST_RELATIVE * abs(baseline):
         return "-"
     if abs(difference) <= ROUNDING * max(scale, 1.0):

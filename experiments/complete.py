@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
 
 def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
-    """Describe the missing runs of an experiment, with counts; empty if it is complete.
+    """Return a description of the missing runs of an experiment; empty if none are missing.
 
     Parameters
     ----------
     only
-        Arms to check. Default: all.
+        Names of the arms to check. Default: all arms.
     """
     lost = failed_pairs(plan, store)
     rows = assigned(plan, store)

@@ -13,7 +13,10 @@ WIDE = 240
 
 
 def open_console() -> Console:
-    """Return the console for tables, as wide as the terminal; 240 characters without a terminal."""
+    """Return the console for tables.
+
+    It is as wide as the terminal or, if the output is not a terminal, 240 characters wide.
+    """
     from rich.console import Console
 
     return Console(highlight=False, width=None if sys.stdout.isatty() else WIDE)

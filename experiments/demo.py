@@ -1,7 +1,7 @@
 """The demonstration of `make demo`: the default warehouse, three seeds, a table and a picture.
 
-The trace of every run is checked before its results are shown. Run folders and picture are written
-to `results/demo`.
+The trace of every run is checked before its results are shown. The run folders and the picture are
+written to `results/demo`.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def interval(values: pd.Series, confidence: float = 0.95) -> tuple[float, float]
 
 
 def run(seed: int) -> pd.DataFrame:
-    """Simulate one seed, prove its trace safe, write its folder and return its footprint."""
+    """Simulate one seed, check the trace, write the run folder and return the footprint."""
     done = simulate("default", "default", "default", seed=seed, trace=True)
     report = done.check()
     if not report.ok:
@@ -61,7 +61,7 @@ def run(seed: int) -> pd.DataFrame:
 
 
 def table(footprints: pd.DataFrame) -> Group:
-    """Return mean and confidence interval of each measure over the seeds."""
+    """Return a table with the mean of each measure over the seeds and its confidence interval."""
     from rich import box
     from rich.console import Group
     from rich.table import Table
@@ -82,7 +82,7 @@ def table(footprints: pd.DataFrame) -> Group:
 
 
 def picture(path: Path) -> None:
-    """Draw a heat map: robots that passed or stopped at each waypoint, summed over seeds."""
+    """Draw a heat map: how often robots passed or stopped at each waypoint, summed over seeds."""
     import matplotlib as mpl
 
     mpl.use("Agg")
@@ -102,7 +102,7 @@ def picture(path: Path) -> None:
 
 
 def say(text: str) -> None:
-    """Print a message about a step."""
+    """Print a message on the progress."""
     print(text, flush=True)
 
 

@@ -1,4 +1,4 @@
-"""Packages that only some experiments need: imported when needed, with a clear error if absent."""
+"""Import of packages that only some experiments need, with a clear error if one is missing."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def optional(module: str, extra: str, purpose: str) -> Any:
     extra
         The extra of rmfs (such as `dask` in `rmfs[dask]`) that contains the package.
     purpose
-        What the module is needed for.
+        What needs the module; the error message begins with this text.
 
     Raises
     ------

@@ -1,10 +1,10 @@
 """The value of perfect foresight: storage locations and robots of a run, chosen in retrospect.
 
 The visits of pods to stations, and the times at which pods are lifted and set down, are kept as in
-the run. If they had been known in advance, PSA could have chosen other storage locations to reduce
-loaded driving, and TA could have chosen other robots to reduce empty driving. For each of these two
-problems, a lower bound on the driving time is proven. With everything else unchanged, a better PSA
-or TA could have saved at most the driving time of the run minus this bound.
+the run. With these visits and times known in advance, PSA could have chosen other storage locations
+to reduce loaded driving, and TA could have chosen other robots to reduce empty driving. For each of
+these two problems, a lower bound on the driving time is proven. With everything else unchanged, a
+better PSA or TA could have saved at most the driving time of the run minus this bound.
 """
 
 from __future__ import annotations
@@ -33,11 +33,12 @@ TOLERANCE_S = 0.001
 
 
 class Foresight(Measure):
-    """Possible savings in a run by better storage locations, or by a better choice of robots.
+    """Driving time that better storage locations or a better choice of robots could save in a run.
 
     The measure is valid only for runs on one tier without repositioning. Savings are given in s and
-    as shares of the time of all robots. Each saving is an upper bound on what other decisions of
-    PSA, or of TA, could have saved if nothing else had changed.
+    as shares of the total time of all robots (duration times number of robots). Each saving is an
+    upper bound on what other decisions of PSA, or of TA, could have saved if nothing else had
+    changed.
     """
 
     columns = (
@@ -156,7 +157,7 @@ def stays_of(run: EndedRun, trips: pd.DataFrame, times: TravelTimes) -> tuple[St
 
 
 def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int]:
-    """Return the time of empty trips to pods in a run, and its minimum over choices of robots.
+    """Return the total time of empty trips to pods, and its minimum over all choices of robots.
 
     Each trip to a pod in the run provides a free robot, at the time and place at which the trip
     began, and a pod to be lifted, at the place at which the trip ended. A choice assigns one of the
@@ -192,7 +193,7 @@ def lifts_of(trips: pd.DataFrame, times: TravelTimes) -> tuple[float, float, int
 
 
 def _only(column: int, columns: int) -> Floats:
-    """Return costs that allow one place alone, at no cost."""
+    """Return the costs of places: 0 for one of them, infinite for all others."""
     cost = np.full(columns, np.inf)
     cost[column] = 0.0
     return cost

@@ -36,7 +36,7 @@ class Opened:
     store: Store
 
     def rows(self) -> tuple[pd.DataFrame, str]:
-        """Return the finished runs, and a note on missing ones.
+        """Return the finished runs, and a note on missing runs (empty if none are missing).
 
         Raises
         ------
@@ -69,8 +69,8 @@ def opened(design: str, out: Path | None = None) -> Opened:
     Raises
     ------
     InputError
-        If there is no such design, the folder holds no experiment, or `design` and `out` are both
-        folders.
+        If there is no such design, if the folder `design` contains no experiment, or if `design` is
+        a folder and `out` is also given.
     """
     from rmfs.experiments.design import planning
     from rmfs.experiments.store import Store

@@ -47,14 +47,14 @@ class Wish:
     confidence
         Confidence of the intervals. Default 0.95.
     interactions
-        Whether the plot `effects` also shows the interactions of pairs of factors if the runs can
-        separate them from other effects. Default: yes.
+        Whether the plot `effects` also shows the interactions of pairs of factors. They are left
+        out if the runs cannot separate all of them from other effects. Default: yes.
     factors
         Factors of the plot `interaction`: at least two, each given by its key or short name (see
         `Plan`). Default: all with more than one level.
     goals
-        For columns of the plot `pareto`: whether "more" or "less" is better. Default: as in the
-        data dictionary.
+        For each column of the plot `pareto`: "more" if larger values are better, otherwise "less".
+        Default: as in the data dictionary.
     note
         A line below the plot. Default: none.
     """
@@ -146,7 +146,7 @@ def _matrix(
     path: Path | None,
     wish: Wish,
 ) -> Figure:
-    """Draw main effects on the diagonal; elsewhere the row's factor gives the lines."""
+    """Draw main effects on the diagonal, interactions elsewhere (a line per level of the row)."""
     count = len(factors)
     width, height = 2.2 + 1.9 * count, (0.6 + 1.8 * count) * len(columns)
     with saving(path, width, height, note=wish.note) as figure:
@@ -243,8 +243,8 @@ def _progression(folder: Path, columns: list[str], path: Path | None, wish: Wish
 def bin_of(end_s: float) -> float:
     """Return the width of the time bins, in s, for a plot of runs that end at `end_s`.
 
-    Of several widths from a minute to half an hour, the smallest with at most 24 bins is returned.
-    If all of them give more bins, the width is an hour.
+    The width is the smallest of several values from one minute to half an hour that gives at most
+    24 bins; if there is none, it is one hour.
     """
     for width in (60.0, 120.0, 300.0, 600.0, 1200.0, 1800.0):
         if end_s / width <= 24:

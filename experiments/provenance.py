@@ -86,7 +86,7 @@ def command() -> str:
 def rows_hash(frame: pd.DataFrame, columns: Sequence[str]) -> str:
     """Return a hash of the values of `arm`, `replication` and `columns` in all rows.
 
-    For equal results, the hash is the same on all machines.
+    Equal results have the same hash on all machines.
     """
     chosen = [*dict.fromkeys(["arm", "replication", *(c for c in columns if c in frame)])]
     text = frame.sort_values(["arm", "replication"], kind="stable")[chosen].to_csv(index=False)

@@ -105,7 +105,7 @@ def _render(
 def _analyses(
     one: Opened, frame: pd.DataFrame, columns: list[str]
 ) -> list[tuple[str, tables.Table]]:
-    """Return an analysis of variance per column, where there are factors and runs for one."""
+    """Return an analysis of variance for each column with enough factors and runs."""
     made = []
     for column in columns:
         try:
@@ -126,7 +126,7 @@ def _or_as_it_is(make: Callable[[], tables.Table], table: tables.Table) -> table
 def _picture(
     one: Opened, frame: pd.DataFrame, kind: str, column: str, confidence: float
 ) -> str | None:
-    """Return a picture in the letters of a data address; nothing where none can be drawn."""
+    """Return a plot as base64 text for a data URL; None if it cannot be drawn."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "picture.png"
         try:

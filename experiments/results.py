@@ -111,11 +111,11 @@ def assigned(plan: Plan, store: Store) -> pd.DataFrame:
 
 
 def reproducible_table(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return those columns of results whose values do not change if the experiment is repeated.
+    """Return only the columns whose values do not change if the experiment is repeated.
 
     Rows are sorted by arm and replication. Columns that depend on the machine (such as wall times)
-    and columns on the origin of a run are excluded. The results of two experiments are identical if
-    the tables that this function returns for them, written as CSV, are equal byte for byte.
+    and columns on the origin of a run are excluded. Two experiments have identical results if their
+    reproducible tables, written as CSV, are equal byte for byte.
     """
     gone = {*names("footprint")} - {*reproducible("footprint")}
     gone |= {column.name for column in learnt() if column.measured}

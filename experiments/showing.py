@@ -64,7 +64,7 @@ def chosen_table(
     *,
     bootstrap: bool,
 ) -> Table:
-    """Return the table of means or, if a baseline is given, of differences to it."""
+    """Return a table of means or, if a baseline is given, of differences from the baseline."""
     from rmfs.experiments import tables
 
     method: Any = "bootstrap" if bootstrap else "t"
@@ -75,7 +75,7 @@ def chosen_table(
 
 
 def goals(given: list[str]) -> dict[str, Goal]:
-    """Read texts of the form `COLUMN=more` or `COLUMN=less`; return the goal of each column."""
+    """Parse texts of the form `COLUMN=more` or `COLUMN=less`; return the goal of each column."""
     found: dict[str, Goal] = {}
     for text in given:
         column, _, goal = text.partition("=")
@@ -94,7 +94,7 @@ def tell_lacking(note: str, *, allowed: bool) -> None:
 
 
 def require_columns(frame: pd.DataFrame, columns: list[str]) -> None:
-    """Raise an error if a column is missing from the rows or is not numeric.
+    """Raise an error if a column is missing from the results or is not numeric.
 
     Raises
     ------

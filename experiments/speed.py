@@ -1,8 +1,8 @@
 """Speed of runs, and how their time is spent: `rmfs bench`.
 
-All runs take place in one process, on one core, without checker and trace; each case is run several
-times. A fixed reference loop is timed before each run, so that machines can be compared. The figure
-to quote is the number of simulated seconds per wall second; to compare machines, multiply it by the
+All runs take place in one process, on one core, without checker and trace. Each case (`Case`) is
+run several times. The figure to quote is the number of simulated seconds per wall second. A fixed
+reference loop is timed before each run: to compare machines, multiply the quoted figure by the
 seconds that the reference loop takes.
 """
 
@@ -101,10 +101,10 @@ def table(
     Parameters
     ----------
     tell
-        Function called with one line per case.
+        Function called after each case, with a line of text on its speed.
     advance
-        Function called at the start and after each run, with the number of runs done and the number
-        of all runs.
+        Function called at the start and after each run, with the number of finished runs and the
+        total number of runs.
     """
     rows = []
     total = len(cases) * runs

@@ -5,9 +5,9 @@
 - `<table>/`: for each table that is kept, one Parquet file per run
 - `failures/`: for each failed run, one JSON file with the traceback
 
-Every file is written completely or not at all, so the dataset can be read at any time. Runs are
-stored under their key, a hash of everything that determines them. Of finished runs, only duplicates
-are ever deleted: rows with outdated inputs stay until the folder is removed, and count again if the
+Every file is written completely or not at all, so the dataset can be read at any time. A run is
+stored under its key, a hash of everything that determines the run. Rows of finished runs are never
+deleted, unless they are duplicates. Rows with outdated inputs are ignored, but count again if the
 inputs are restored.
 """
 
@@ -179,14 +179,14 @@ class Store:
         return frame.drop_duplicates("run", keep="last", ignore_index=True)
 
     def finished(self, tables: Sequence[str] = ()) -> set[str]:
-        """Return the keys of the runs that are stored with all of `tables`."""
+        """Return the keys of the finished runs for which all of `tables` are stored."""
         keys = set(self.rows(columns=[])["run"])
         for table in tables:
             keys &= {path.stem for path in (self.folder / table).glob("*.parquet")}
         return keys
 
     def table(self, name: str, keys: Sequence[str]) -> pd.DataFrame:
-        """Read the table `name` of the runs with these keys, as far as it was kept.
+        """Read a kept table of the runs with these keys; runs without the table are left out.
 
         Raises
         ------
@@ -244,7 +244,7 @@ def _read(path: Path, columns: Sequence[str] | None = None) -> pa.Table:
 
 
 def _rows(path: Path, columns: Sequence[str] | None) -> pa.Table:
-    """Read rows of runs, which say whose they are; raises what `_read` does."""
+    """Read rows of runs, and check the columns that identify them; raises what `_read` raises."""
     table = _read(path, columns)
     for name in _NEVER_EMPTY if columns is None else set(columns) & set(_NEVER_EMPTY):
         if name not in table.column_names or table[name].to_pandas().isna().any():

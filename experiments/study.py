@@ -1,4 +1,4 @@
-"""`experiment`: a whole study in one call, from factors to tables."""
+"""The function `experiment`: a whole study in one call, from factors to tables."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Study:
 
     @property
     def lacking(self) -> str:
-        """Description of missing runs, a note below every table; empty if no run is missing."""
+        """Note on missing runs, shown below every table; empty if no run is missing."""
         return lacking(self.plan, Store(self.folder))
 
     def table(self, *columns: str, by: str | None = None, confidence: float = 0.95) -> Table:
@@ -125,17 +125,18 @@ class Study:
             Columns of the footprint; for `progression`, of the table `series`. Default: depends on
             `kind`.
         kind
-            `intervals` (a dot for every seed; mean and interval of each arm), `effects` (mean at
-            each level of each factor; also of pairs of factors if the runs can separate their
-            interactions), `interaction` (mean at each pair of levels of two factors), `pareto`
-            (one column against another), `progression` (over time; needs `keep=["series"]`).
+            `intervals`: a dot for every seed, and mean and interval of each arm. `effects`: mean at
+            each level of each factor, and at each pair of levels of two factors if the runs can
+            separate interactions. `interaction`: mean at each pair of levels of two factors.
+            `pareto`: one column against another. `progression`: columns over time; needs
+            `keep=["series"]` in `experiment`.
         by
             For `intervals`: as for `table`.
         factors
-            For `interaction`: two or more factors. Default: all.
+            For `interaction`: two or more factors. Default: all with more than one level.
         goals
-            For `pareto`: whether "more" or "less" of a column is better. Default: from the data
-            dictionary.
+            For `pareto`, by column: "more" if larger values are better, otherwise "less". Default:
+            from the data dictionary.
 
         Raises
         ------
@@ -208,7 +209,7 @@ def experiment(
         Seeds, the same for every arm, so that arms can be compared seed by seed.
     base
         Inputs of all arms: `layout`, `scenario` and `controllers` (each is `default` if not given),
-        and further parameters.
+        and values of further parameters, named as in `factors`.
     measures
         Additional measures, as for `rmfs.simulate`.
     keep

@@ -1,4 +1,4 @@
-"""Tables of results: means with intervals per arm, for papers and for reading."""
+"""Tables of results, such as means per arm, in formats for papers, web pages and terminals."""
 
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ def p_value(p: float) -> str:
 
 
 def axis_label(column: str, table: str = "footprint", *, per: str = "") -> str:
-    """Return the label of a column for an axis, in words with the unit.
+    """Return an axis label for a column, in words with the unit.
 
     Parameters
     ----------

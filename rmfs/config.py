@@ -136,7 +136,7 @@ def apply_overrides(table: Table, overrides: list[tuple[list[str], Any]]) -> Tab
 
 
 def validate(model: type[M], table: Table, source: str) -> M:
-    """Validate a table as a model.
+    """Validate a table and return the model made from it.
 
     Parameters
     ----------

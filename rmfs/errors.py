@@ -1,10 +1,11 @@
 """Exceptions for wrong input, for runs that cannot continue, and for defects of rmfs.
 
-An `InputError` carries one line for the user: which file, which key, and what would be valid. The
-command line prints it and exits with code 2. A `RuleError` also carries one line: what a user's
-controller did wrong in a run. An `InternalError` reports a defect that the program has detected
-itself; the command line writes a file that helps to reproduce the defect, and exits with code 1. An
-exception that the command line does not handle also indicates a defect; its traceback is shown.
+The message of an `InputError` is one line that names the file and the key and says what would be
+valid. The command line prints this line and exits with code 2. The message of a `RuleError` is also
+one line; it says what a user's controller did wrong in a run. An `InternalError` reports a defect
+that the program has detected itself; the command line writes a file that helps to reproduce the
+defect, and exits with code 1. An exception that the command line does not handle also indicates a
+defect; its traceback is shown.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ class LayoutError(InputError):
     Parameters
     ----------
     problems
-        The violations because of which the layout is refused, each with the element concerned.
+        The violations found, each with the element concerned.
     source
         The file or name of the layout.
     """
@@ -60,5 +61,5 @@ class InternalError(RuntimeError):
     Parameters
     ----------
     message
-        What happened; after a failure in Rust code, also where in the source code.
+        What happened and, if it happened in Rust code, the place in the source code.
     """

@@ -95,11 +95,11 @@ def write_text(path: Path, text: str) -> None:
 
 @contextmanager
 def replacing_folder(target: Path, mark: str, what: str, *, replace: bool = True) -> Iterator[Path]:
-    """Yield a temporary folder beside `target`, which is renamed to `target` on success.
+    """Yield a temporary folder beside `target`; rename this folder to `target` on success.
 
     The temporary folder is created when the context is entered, so that a target that cannot be
     written is noticed early. On an error or an interruption, the temporary folder is removed,
-    together with parent folders created for it. While the context is open, the target is locked
+    together with any parent folders created for it. While the context is open, the target is locked
     against other processes.
 
     Parameters
@@ -245,7 +245,7 @@ _HERE = -100
 
 
 def _exchanged(one: Path, other: Path) -> bool:
-    """Exchange two folders atomically (Linux); return False where the system cannot."""
+    """Exchange two folders atomically (Linux); return False if the system cannot."""
     try:
         rename = ctypes.CDLL(None, use_errno=True).renameat2
     except (OSError, AttributeError):  # another system

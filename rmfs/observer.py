@@ -1,7 +1,7 @@
 """Observers of a run: the only interface through which the simulation reports events.
 
 The simulation calls the methods of `Observer` as events happen; by default, they do nothing. A
-measure overrides those that it needs, so the simulation never depends on what is measured.
+measure overrides the methods that it needs, so the simulation never depends on what is measured.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class MotionCounts(TravelTimes, Protocol):
     """
 
     def motion(self) -> dict[str, NDArray[Any]]:
-        """Return, by name, arrays of distances (m) and times (s), with one value per robot."""
+        """Return distances (m) and times (s) as arrays by name, with one value per robot."""
         ...
 
     def trips(self) -> dict[str, NDArray[Any]]:
@@ -39,26 +39,26 @@ class MotionCounts(TravelTimes, Protocol):
         ...
 
     def edges(self) -> dict[str, NDArray[Any]]:
-        """Return the edges that robots used, and how often they passed each, as columns by name."""
+        """Return each used edge and how many times robots passed it, as columns by name."""
         ...
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return, by name, arrays of energies (J) and charging times (s), one value per robot.
+        """Return energies (J) and charging times (s) as arrays by name, with one value per robot.
 
-        `initial_j`, `ever_charged_j`, `ever_used_j` and `level_j` are not reset. May be called only
-        if the scenario models energy.
+        The arrays `initial_j`, `ever_charged_j`, `ever_used_j` and `level_j` are not reset. This
+        method may be called only if the scenario models energy.
         """
         ...
 
     def used_j(self, robot: int) -> float:
         """Return the energy drawn by a robot since time zero, less recovered braking energy, in J.
 
-        May be called only if the scenario models energy.
+        This method may be called only if the scenario models energy.
         """
         ...
 
     def plans(self) -> dict[str, NDArray[Any]]:
-        """Return the searches for plans since time zero, as columns by name.
+        """Return the searches for routes since time zero, as columns by name, one row per search.
 
         The columns are empty if searches take no simulated time.
         """
@@ -73,9 +73,9 @@ class Troubles(Protocol):
     """The part of a run that records disturbances."""
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return how many disturbances overlap a period, and how long they last in it, in s.
+        """Return the number of disturbances that overlap a period, and their total time in it (s).
 
-        The durations of simultaneous disturbances are added up.
+        The times of simultaneous disturbances are added up.
         """
         ...
 
@@ -89,13 +89,13 @@ class Observed:
     layout, scenario
         The layout and the scenario that are simulated.
     world
-        Pods, orders, stations and robots in their current state; `world.now_s` is the time.
+        Pods, orders, stations and robots in their current state; `world.now_s` is the current time.
     traffic
-        Counts motion and knows travel times.
+        Counts of motion, and travel times.
     disturbances
-        Counts the disturbances of the run.
+        Record of the disturbances in the run.
     order_stream, bundle_stream
-        The orders and the bundles, if they are read from a file; None otherwise.
+        The orders and the bundles if they are read from files; None otherwise.
     """
 
     layout: Layout
@@ -108,7 +108,7 @@ class Observed:
 
 
 class Observer:
-    """Callbacks of a run; by default each does nothing.
+    """Callbacks of a run; by default, each of them does nothing.
 
     Times are simulated seconds. Orders and bundles are given as objects; robots, pods, stations,
     SKUs and waypoints by index.
@@ -118,13 +118,13 @@ class Observer:
         """Report that the world is built and stocked; nothing has happened yet."""
 
     def run_ended(self, time_s: float) -> None:
-        """Report the end of the run; the world stays as it is."""
+        """Report the end of the run, after which the state of the world no longer changes."""
 
     def order_created(self, order: Order) -> None:
         """Report that a pick order joined the backlog (`order.created_s`)."""
 
     def order_cut(self, order: Order) -> None:
-        """Report that units not in stock were cut from an order of the backlog (`units_cut`)."""
+        """Report that units not in stock were cut from a backlog order (`order.units_cut`)."""
 
     def order_cancelled(self, order: Order) -> None:
         """Report that an order was cancelled for lack of stock (`order.cancelled_s`)."""
@@ -144,7 +144,7 @@ class Observer:
     def picks_changed(self, time_s: float, robot: int) -> None:
         """Report that requests were bound to the pod of a robot's pick task, or released from it.
 
-        It may also be called when nothing has changed.
+        This method may also be called when nothing has changed.
         """
 
     def unit_picked(
@@ -165,11 +165,11 @@ class Observer:
     def unit_handled(self, handled: Handled) -> None:
         """Report how a picker handles the unit that was just reported by `unit_picked`.
 
-        Called only in scenarios with pickers.
+        This method is called only in scenarios with pickers.
         """
 
     def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
-        """Report that a picker leaves a pick station, having been there during [from_s, to_s)."""
+        """Report that a picker, present at a pick station during [from_s, to_s), leaves it."""
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
         """Report that the pick of an order line's last unit starts.
@@ -178,40 +178,43 @@ class Observer:
         """
 
     def order_completed(self, order: Order) -> None:
-        """Report that an order, with all its parts, has left the stations (`completed_s`)."""
+        """Report that all parts of an order have left their stations (`order.completed_s`)."""
 
     def slot_freed(self, order: Order) -> None:
         """Report that an order, or a part of one, has left its pick station and freed its slot."""
 
     def tote_held(self, station: int, from_s: float, to_s: float) -> None:
-        """Report that an order, or part of one, could not leave a station during [from_s, to_s).
+        """Report that a filled tote had to stay at its station during [from_s, to_s).
 
-        The reason is lack of room for its tote on the conveyor or in the put wall.
+        There was no room for the tote on the conveyor or in the put wall.
         """
 
     def order_packed(self, parcel: Parcel) -> None:
-        """Report that an order is packed (`parcel.packed_s`); only in scenarios with packing."""
+        """Report that an order has been packed (`parcel.packed_s`).
+
+        This method is called only in scenarios with packing.
+        """
 
     def bundle_created(self, bundle: Bundle) -> None:
-        """Report that a bundle, a replenishment order, has arrived (`bundle.created_s`)."""
+        """Report that a bundle (replenishment order) has arrived (`bundle.created_s`)."""
 
     def bundle_promised(self, bundle: Bundle) -> None:
-        """Report that RPS promised a bundle to a pod (`bundle.pod`).
+        """Report that RPS promised a bundle to a pod, that is, chose its pod (`bundle.pod`).
 
-        ROA and TA may act on the promise only after `bundles_released` has been called for the pod.
+        ROA and TA may act on this choice only after `bundles_released` has been called for the pod.
         """
 
     def bundles_released(self, pod: int) -> None:
-        """Report that the bundles promised to a pod were released: ROA and TA may act on them."""
+        """Report that the bundles promised to a pod were released; ROA and TA may now use them."""
 
     def bundle_sent(self, bundle: Bundle) -> None:
         """Report that ROA chose the station of a bundle (`bundle.station`)."""
 
     def bundle_assigned(self, bundle: Bundle) -> None:
-        """Report that a bundle is assigned: it has been released and has a station.
+        """Report that a bundle is assigned, that is, it has been released and has a station.
 
-        Its pod, station and time of assignment are `bundle.pod`, `bundle.station` and
-        `bundle.assigned_s`.
+        `bundle.pod`, `bundle.station` and `bundle.assigned_s` give its pod, its station and the
+        time of assignment.
         """
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
@@ -232,8 +235,8 @@ class Observer:
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
         """Report that a station is busy during [from_s, to_s).
 
-        In this period, a unit or a bundle is handled, a robot is charged, a battery is swapped, or
-        a pod is kept at a station of a user-defined kind.
+        In this period, the station handles a unit or a bundle, charges a robot, swaps a battery or,
+        if its kind is user-defined, keeps a pod.
         """
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
@@ -246,7 +249,7 @@ class Observer:
         """Report that a robot has ended its task and needs a new one."""
 
     def place_left(self, robot: int) -> None:
-        """Report that a robot has left storage locations, which are no longer reserved for it."""
+        """Report that a robot has left storage locations that were reserved for it until now."""
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
         """Report that a robot starts to lift a pod."""
@@ -255,32 +258,32 @@ class Observer:
         """Report that a robot has set down its pod at a storage location."""
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Report that a controller was asked for decisions; the call took `wall_s` of wall time.
+        """Report a call of the controller of `problem` that took `wall_s` seconds of wall time.
 
-        `decisions` is the number of decisions that it made without an optimiser. Decisions that
-        follow from an optimiser's solution are counted in the `Call` that asked for it.
+        `decisions` is the number of decisions that the controller made without an optimiser.
+        Decisions taken from an optimiser's solution are counted in the `Call` of the optimiser.
         """
 
     def rule_decided(self, problem: str, time_s: float) -> None:
-        """Report that a controller made a decision by its own rule although it has an optimiser."""
+        """Report that a controller with an optimiser made a decision by its own rule instead."""
 
     def optimiser_asked(self, call: Call) -> None:
-        """Report that a controller asked an optimiser a question."""
+        """Report that a controller called an optimiser; `call` contains the question."""
 
     def optimiser_answered(self, call: Call) -> None:
         """Report that an optimiser answered, or that its call failed or was abandoned.
 
-        Some decisions of the answer may be applied only later.
+        Some of the decisions in the answer may be applied later.
         """
 
     def controller_exchanged(self, time_s: float, problem: str, name: str) -> None:
-        """Report that the controller called `name` has replaced the previous one for a problem."""
+        """Report that controller `name` has replaced the previous controller for `problem`."""
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
         """Report that SA switched a station on or off."""
 
     def warmup_ended(self, time_s: float) -> None:
-        """Report the end of the warm-up, when measuring begins; work in progress goes on."""
+        """Report that the warm-up ends and measuring begins; work in progress continues."""
 
     def sampled(self, time_s: float) -> None:
-        """Report that one more minute of the measured time has been simulated."""
+        """Report that another minute of the measured time has been simulated."""

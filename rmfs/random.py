@@ -1,7 +1,7 @@
-"""A tree of named random streams, grown from one seed.
+"""A tree of named random streams, derived from one seed.
 
-Each stream is derived from the seed and the fixed number of the stream. Adding a stream therefore
-never changes another, and arms of an experiment that run with the same seed face the same demand.
+Each stream is derived from the seed and the stream's own fixed number. Adding a stream therefore
+never changes the others. Arms of an experiment that run with the same seed face the same demand.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 class Stream(IntEnum):
     """The named streams.
 
-    The random numbers of a stream depend on its number here, which is therefore never changed or
-    reused.
+    The random numbers of a stream depend on its value in this enumeration, so no value is ever
+    changed or reused.
     """
 
     LAYOUT = 0
@@ -47,8 +47,8 @@ def generator(seed: int, stream: Stream, *path: int) -> np.random.Generator:
     seed
         The run's (or layout's) seed, 0 or greater.
     path
-        Numbers that select a substream, for example the ordinal of an order; each path yields a
-        sequence of its own. Without them, the stream itself is meant.
+        Numbers that select a substream, for example the ordinal of an order. Different paths give
+        independent sequences. If the path is empty, the stream itself is selected.
     """
     sequence = np.random.SeedSequence(seed, spawn_key=(int(stream), *path))
     return np.random.Generator(np.random.PCG64(sequence))

@@ -69,8 +69,8 @@ _INSTALLED_ONLY: ContextVar[bool] = ContextVar("_INSTALLED_ONLY", default=False)
 def installed_only() -> Iterator[None]:
     """Return a context in which `require_allowed` refuses references such as `module:Class`.
 
-    It is used for requests, such as those from a web page, which may name installed classes but
-    must not run code of their own.
+    It is used for requests, for example from a web page, that may select installed classes by
+    name but must not run any other code.
     """
     token = _INSTALLED_ONLY.set(True)
     try:
@@ -96,17 +96,20 @@ def require_allowed(reference: str) -> None:
 
 
 def is_reference(text: str) -> bool:
-    """Whether a text is `module:Class` or `file.py:Class` and not a plain name."""
+    """Return whether a text is `module:Class` or `file.py:Class`, not a plain name."""
     return ":" in text
 
 
 def anchored(reference: str, folder: Path | None = None) -> str:
-    """Return a reference that, if it names a file, does not depend on the working directory.
+    """Return a reference with the absolute path of its file, if it refers to a file.
 
     Parameters
     ----------
+    reference
+        `path/to/file.py:Class`, `module:Class` or a plain name.
     folder
-        Folder in which a file is looked for before the working directory. Default: none.
+        Folder in which the file is sought first. If it is not there, or no folder is given, the
+        path is relative to the working directory.
 
     Returns
     -------
@@ -122,7 +125,7 @@ def anchored(reference: str, folder: Path | None = None) -> str:
 
 
 def anchored_file(given: str, folder: Path) -> str:
-    """Return the path of a file in a folder; any other text unchanged."""
+    """Return the absolute path of `given` if it is a file in a folder; otherwise return `given`."""
     beside = folder / given
     try:
         return str(beside.absolute()) if beside.is_file() else given
@@ -158,7 +161,7 @@ def reference_of(found: type) -> str:
 def name_of(found: type) -> str:
     """Return a name by which `resolve` finds a class in this process, wherever it was defined.
 
-    A class that cannot be imported is kept in memory under this name.
+    A class that is defined in `__main__` or cannot be imported is kept in memory under this name.
     """
     try:
         return reference_of(found) if found.__module__ != "__main__" else _remembered(found)
@@ -195,7 +198,7 @@ def _remembered(found: type) -> str:
 
 
 def source_file(found: type) -> Path | None:
-    """Return the file that defines a class; None for a class typed at a prompt, for example."""
+    """Return the file that defines a class; None if none does, as for a class typed at a prompt."""
     try:
         return Path(inspect.getfile(found))
     except (OSError, TypeError):
@@ -278,7 +281,7 @@ def _path_of(name: str) -> Path:
 
 
 class _Files:
-    """Finds the modules of user files, also when an object of theirs is unpickled."""
+    """Finds the modules of user files, also when an instance of their classes is unpickled."""
 
     @classmethod
     def find_spec(

@@ -35,7 +35,7 @@ def forced(force: bool = True) -> Iterator[None]:
     Parameters
     ----------
     force
-        If false, `require` refuses such work, as it does outside of any context.
+        If false, `require` refuses such work, as it does by default.
     """
     token = _force.set(force)
     try:
@@ -45,19 +45,19 @@ def forced(force: bool = True) -> Iterator[None]:
 
 
 def require(needed: float, what: str) -> None:
-    """Raise an error if something does not fit into memory.
+    """Raise an error if more memory is needed than is free.
 
     Parameters
     ----------
     needed
         Approximate number of bytes.
     what
-        Description of what needs the memory, in words and numbers, for the message.
+        Description of the work that needs the memory, for the message.
 
     Raises
     ------
     InputError
-        If more is needed than is free, unless within `forced`.
+        If more than the free memory is needed, except in the context `forced`.
     """
     free = available()
     if needed > free and not _force.get():
@@ -75,8 +75,8 @@ def spoken(size: float) -> str:
 def available() -> float:
     """Return how many bytes this process may still allocate; infinite if that is unknown.
 
-    This is the smaller of the machine's available memory and what is left of the process's own
-    limit.
+    The result is the smaller of two numbers: the available memory of the machine, and the unused
+    part of the process's own limit.
     """
     limits = [float("inf")]
     try:

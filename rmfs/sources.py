@@ -1,4 +1,4 @@
-"""The user's source files that a class depends on: its module and the modules imported from there.
+"""The user's source files on which a class depends: its module, and what this module imports.
 
 Imports are found by parsing the source text, so the answer does not depend on what the current
 process has imported. Python, rmfs and installed packages other than that of the class are left

@@ -43,9 +43,9 @@ def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration
     Parameters
     ----------
     layout, skus
-        The warehouse.
+        The warehouse and its SKUs.
     times
-        Unhindered travel times between its waypoints.
+        Unhindered travel times between the waypoints of the layout.
     duration_s
         Length of the window in which units are counted, in s.
     """
@@ -60,18 +60,19 @@ def units_per_h_keeping_stock(
     duration_s: float,
     fleets: Collection[int],
 ) -> dict[int, float]:
-    """Return an upper bound on units per hour for each fleet, for runs that keep their stock.
+    """Return an upper bound on units per hour for each fleet size, for runs that keep their stock.
 
-    Such a run stores at least as many units as it picks. Not even a controller that knew all future
-    orders could exceed the bound, which holds for any choice of orders, pods and places. It assumes
-    that every bundle has the number of units specified for its SKU (`bundle_units`).
+    A run keeps its stock if it stores at least as many units as it picks. The bound holds for any
+    choice of orders, pods and places, even for a controller that knows all future orders. It is
+    infinite if some handling takes no time. The bound assumes that every bundle has the number of
+    units that `bundle_units` gives for its SKU.
 
     Parameters
     ----------
     layout, skus, times, duration_s
-        As for `units_per_h_bound`; of the layout's robots, only the kinds matter.
+        As for `units_per_h_bound`; of the robots in the layout, only the kinds matter.
     fleets
-        The fleets, each as a number of robots.
+        The numbers of robots for which bounds are computed.
     """
     data = run_bound(layout, skus, times, duration_s)
     if data is None:
@@ -90,7 +91,7 @@ def units_per_h_keeping_stock(
 def run_bound(
     layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float
 ) -> RunBound | None:
-    """Return the bound's input; None if some handling takes no time, so that there is no bound.
+    """Return the input of the bound; None if some handling takes no time (there is no bound then).
 
     Parameters
     ----------
@@ -132,9 +133,9 @@ def run_bound(
 
 
 def _legs(layout: Layout, times: TravelTimes) -> Legs:
-    """Return the least robot time of the ways of a visit, per pick or replenishment station.
+    """Return the least robot time of the drives of a visit, per pick or replenishment station.
 
-    Stations of other kinds are left out: a way by one of them is never shorter.
+    Stations of other kinds are left out: a drive via such a station is never shorter.
     """
     waypoints = [station.waypoint for station in layout.pick_stations]
     waypoints += [station.waypoint for station in layout.replenishment_stations]
@@ -153,7 +154,7 @@ def _legs(layout: Layout, times: TravelTimes) -> Legs:
 def _fastest(
     layout: Layout, travel_times: Callable[..., NDArray[np.float64]], waypoint: int
 ) -> NDArray[np.float64]:
-    """Return the times of the robot that is fastest on each way, with a pod."""
+    """Return the travel times with a pod of the robot that is fastest on each drive."""
     of_each_kind = np.unique(layout.robot_kind, return_index=True)[1]
     tables = [travel_times(waypoint, True, int(robot)) for robot in of_each_kind]
     fastest: NDArray[np.float64] = np.min(tables, axis=0, initial=math.inf) * _SAFE
@@ -161,5 +162,5 @@ def _fastest(
 
 
 def _finite(time_s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Let a way that does not exist cost nothing, which is safe."""
+    """Replace infinite times by 0, which keeps the bound valid."""
     return np.where(np.isfinite(time_s), time_s, 0.0)

@@ -1,4 +1,4 @@
-"""Calibration: the load at which a measure has a given mean, with a stated confidence."""
+"""Calibration: finding the level of a parameter at which a measure has a given mean."""
 
 from rmfs.experiments.calibration.procedure import Calibration as Calibration
 from rmfs.experiments.calibration.procedure import Goal as Goal

@@ -71,10 +71,10 @@ def calibrate(
 ) -> None:
     """Find the arrival rate at which a given share of orders is on time, with a stated confidence.
 
-    Another numerical parameter can be chosen instead of the arrival rate, and another column of the
-    footprint instead of the share, if the mean of the column rises or falls monotonically with the
-    parameter. The command can be interrupted and repeated. Exits with code 1 if the maximum number
-    of runs was too small.
+    Instead of the arrival rate, another numerical parameter can be chosen (--key), and instead of
+    the share of orders on time, another column of the footprint (--column). The mean of the column
+    must rise or fall monotonically with the parameter. If the command is interrupted and repeated,
+    finished runs are reused. The exit code is 1 if the maximum number of runs was too small.
     """
     from rmfs.config import parse_override
     from rmfs.experiments.calibration.procedure import Goal
@@ -131,7 +131,7 @@ def verdict(found: Calibration, key: str, column: str) -> str:
 
 
 def steps_table(found: Calibration, key: str, column: str) -> Table:
-    """Return the steps of a calibration as a table, with one row per level evaluated."""
+    """Return the steps of a calibration as a table, one row per step."""
     import pandas as pd
 
     from rmfs.experiments.tables import HALF, Table

@@ -3,16 +3,17 @@ r"""Find where a noisy, monotone response has a given mean: a root is estimated,
 1. *Search*: retrospective approximation (H. Chen and B. W. Schmeiser 2001, Stochastic root finding
    via retrospective approximation, IIE Transactions 33(3), 259-275). The mean over a few seeds,
    which are the same at every level, is a deterministic function of the level. The level at which
-   it meets the target is found by the Illinois variant of regula falsi and serves as a guess.
+   this mean equals the target is found by the Illinois variant of regula falsi and is the first
+   guess.
 2. *Test*: the guess is simulated with new seeds. The two-stage rule of Stein (1945, A two-sample
    test for a linear hypothesis whose power is independent of the variance, Annals of Mathematical
    Statistics 16(3), 243-258) determines how many seeds are needed for a confidence interval whose
-   half width is half the tolerance; the rule is exact if runs are normally distributed. The guess
-   is accepted if the whole interval lies within the tolerance. Otherwise a monotone function is
-   fitted to the means so far (isotonic regression), and the level at which it meets the target is
-   the next guess, which is tested with further seeds.
+   half width is half the tolerance; the rule is exact if responses are normally distributed. The
+   guess is accepted if the whole interval lies within the tolerance of the target. Otherwise, a
+   monotone function is fitted to the means so far (isotonic regression). The level at which this
+   function equals the target is the next guess, which is tested with further seeds.
 
-The k-th test may err with probability :math:`\alpha / 2^k`, so all tests together err with
+The k-th test errs with probability at most :math:`\alpha / 2^k`, so all tests together err with
 probability at most :math:`\alpha = 1 - confidence`. This bounds the probability that the mean at
 the level found differs from the target by more than the tolerance, however many guesses were
 tested.
@@ -44,7 +45,7 @@ MOST_LOOKS = 12
 """Maximum number of levels that the search evaluates, in addition to both ends of the range."""
 
 DOUBLINGS = 3
-"""Number of times the number of seeds is doubled before the target is taken to be out of range."""
+"""Number of doublings of the number of seeds after which the target counts as out of range."""
 
 
 @dataclass(frozen=True)
@@ -56,14 +57,14 @@ class Goal:
     target
         The desired mean.
     tolerance
-        Maximum difference of the mean from the target.
+        Maximum difference between the mean and the target.
     low, high
-        Levels between which the level sought lies.
+        Ends of the range in which the level is sought.
     confidence
-        Required probability that the mean is within the tolerance. Default 0.95.
+        Required probability that the difference is within the tolerance. Default 0.95.
     search_seeds
-        Number of seeds at each level of the search. It is doubled, up to three times, while the
-        target does not lie between the means at `low` and `high`. Default 4.
+        Number of seeds at each level of the search. If the target does not lie between the means
+        at `low` and `high`, this number is doubled, up to three times. Default 4.
     test_seeds
         Number of seeds in the first stage of a test. Default 10.
     most_runs
@@ -113,7 +114,8 @@ class Step:
         Mean of the response, and half width of its confidence interval. The half width is nan
         except in a test.
     verdict
-        The conclusion, in words.
+        `above` or `below`, if the mean is above or below the target; `stands`, if the level passed
+        its test.
     """
 
     phase: Literal["end", "search", "test"]
@@ -137,11 +139,12 @@ class Calibration:
         Level at which the mean is within the tolerance of the target, with the required confidence;
         nan if the runs did not suffice.
     mean, half_width
-        Mean, and half width of its interval, in the test that this level passed.
+        Mean of the response, and half width of its confidence interval, in the test that the
+        level passed.
     slope
-        Estimated change of the mean per unit of the level, at this level.
+        Estimated slope of the mean as a function of the level, at `level`.
     steps
-        All levels evaluated.
+        Evaluations of levels, in order.
     runs
         Number of runs made.
     """
@@ -161,7 +164,7 @@ class Calibration:
 
 
 class _ExhaustedError(Exception):
-    """The runs do not suffice."""
+    """The maximum number of runs does not suffice."""
 
 
 @dataclass
@@ -176,7 +179,7 @@ class _Procedure:
 
     @property
     def runs(self) -> int:
-        """How many runs it has taken so far."""
+        """Number of runs made so far."""
         return len(self.asked)
 
     def run(self) -> Calibration:
@@ -198,12 +201,14 @@ class _Procedure:
     # --- search ---------------------------------------------------------------------------------
 
     def _ends(self) -> tuple[float, float]:
-        """Return how far the means at both ends are off; more seeds tell if they are on one side.
+        """Return the means at both ends of the range minus the target.
+
+        If both differences have the same sign, they are computed again with more seeds.
 
         Raises
         ------
         InputError
-            If the target does not lie between them with the most seeds either.
+            If they still have the same sign with the largest number of seeds.
         """
         goal = self.goal
         for doubled in range(DOUBLINGS + 1):
@@ -218,12 +223,12 @@ class _Procedure:
         )
 
     def _search(self, low: float, high: float) -> None:
-        """Look for the root of the mean over the seeds of the search.
+        """Look for the level at which the mean over the seeds of the search equals the target.
 
         Parameters
         ----------
         low, high
-            How far the means at both ends are off, with different signs.
+            Means at both ends of the range minus the target; their signs differ.
         """
         begin, end = self.goal.low, self.goal.high
         at_begin, at_end = low, high
@@ -243,7 +248,7 @@ class _Procedure:
                 end, at_end, at_begin = guess, off, at_begin / 2
 
     def _look(self, level: float, phase: Literal["end", "search"]) -> float:
-        """Return how far the mean over the seeds of the search is off the target."""
+        """Return the mean over the seeds of the search minus the target."""
         goal = self.goal
         values = self._values(level, goal.first_seed, self.search_seeds)
         mean = float(values.mean())
@@ -255,10 +260,10 @@ class _Procedure:
     # --- test -----------------------------------------------------------------------------------
 
     def _test(self, level: float, error: float) -> tuple[float, float]:
-        """Return the mean at a level and the half width of its interval, with seeds of its own.
+        """Return the mean at a level and the half width of its interval, computed with new seeds.
 
-        Each of the two ends of the interval is missed with the probability given at most, and a
-        guess that stands can be wrong in one direction only.
+        The true mean is above the interval with probability at most `error`, and below it with
+        probability at most `error`. An accepted guess can be wrong in one direction only.
         """
         goal = self.goal
         first = self.next_seed
@@ -315,14 +320,14 @@ def calibrate(goal: Goal, respond: Respond, watch: Callable[[Step], None] = prin
 
 @dataclass(frozen=True)
 class _Curve:
-    """A strictly monotone function of lines between levels, shape (N,): how far means are off."""
+    """The mean minus the target, as a monotone function that is linear between N levels."""
 
     level: NDArray[np.float64]
     off: NDArray[np.float64]
 
     @classmethod
     def of(cls, steps: Sequence[Step], goal: Goal, *, rising: bool) -> _Curve:
-        """Go through the isotonic regression of the means, weighted by their seeds."""
+        """Return the isotonic regression of the means, weighted by their numbers of seeds."""
         level, which = np.unique([step.level for step in steps], return_inverse=True)
         seeds = np.array([step.seeds for step in steps])
         weight = np.bincount(which, seeds)
@@ -333,7 +338,7 @@ class _Curve:
         return cls(pooled, found.x[first])
 
     def root(self) -> tuple[float, float] | None:
-        """Return where it is 0, and its slope there; None if it has one sign."""
+        """Return the level at which the curve is 0, and its slope there; None if there is none."""
         after = int(np.argmax(np.sign(self.off) != np.sign(self.off[0])))
         if after == 0:
             return None
@@ -345,7 +350,7 @@ class _Curve:
         return float(begin - low / slope), slope
 
     def through(self, other: _Curve) -> _Curve:
-        """Return it shifted so that it meets another one where that is nearest to 0."""
+        """Return this curve, shifted to meet `other` where `other` is nearest to 0."""
         nearest = int(np.abs(other.off).argmin())
         now = np.interp(other.level[nearest], self.level, self.off)
         return _Curve(self.level, self.off + other.off[nearest] - now)
@@ -354,8 +359,9 @@ class _Curve:
 def _root(steps: Sequence[Step], goal: Goal, *, rising: bool) -> tuple[float, float]:
     """Return the next guess, and the slope there.
 
-    Tests on both sides of the target tell it. Before there are such, the curve of the search does,
-    shifted to the best test: seeds that all levels share move it up or down as a whole.
+    If the means of tests lie on both sides of the target, the guess is the root of their curve.
+    Otherwise, it is the root of the curve of the search, shifted to meet the best test. A shift
+    suffices, because the levels of the search share their seeds and so most of their error.
     """
     looks = [step for step in steps if step.phase != "test"]
     tests = [step for step in steps if step.phase == "test"]
@@ -373,7 +379,7 @@ def _root(steps: Sequence[Step], goal: Goal, *, rising: bool) -> tuple[float, fl
 
 
 def _rounded(level: float) -> float:
-    """Round to a few digits, so that a level is easy to read and type."""
+    """Round a level to a few significant digits, so that it is easy to read and type."""
     if level == 0:
         return 0.0
     return round(level, DIGITS - 1 - floor(log10(abs(level))))

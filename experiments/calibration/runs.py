@@ -1,4 +1,4 @@
-"""The response of a calibration: a footprint column of runs, stored like those of an experiment."""
+"""The response of a calibration: a footprint column of runs that it simulates and stores."""
 
 from __future__ import annotations
 
@@ -26,14 +26,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Runs:
-    """Runs that differ only in one parameter and in their seed.
+    """Function that simulates runs and returns one column of their footprints.
 
-    Runs that are already stored are not repeated, so an interrupted calibration can be resumed.
+    The runs differ only in one parameter and in their seed. Runs that are already stored are not
+    repeated, so an interrupted calibration can be resumed.
 
     Attributes
     ----------
     base
-        Common settings: `layout`, `scenario`, `controllers`, `pacing`, and parameters.
+        Settings shared by all runs: `layout`, `scenario`, `controllers`, `pacing`, and parameters.
     key
         The varied parameter, such as `scenario.demand.orders_per_h`.
     column
@@ -41,12 +42,13 @@ class Runs:
     folder
         Folder in which the runs are stored.
     processes, watcher
-        As for `rmfs.experiment`.
+        As for `rmfs.experiments.run`.
 
     Raises
     ------
     InputError
-        If there is no such column, or it is not numeric, or not reproducible (a wall time).
+        If there is no such column, or it is not numerical, or it is not reproducible (such as a
+        wall time).
     """
 
     base: Mapping[str, Any]
@@ -66,7 +68,7 @@ class Runs:
             raise InputError(f"column {self.column}: not a number of the footprint{hint}")
 
     def plan(self, level: float, seeds: Sequence[int]) -> Plan:
-        """Return the plan of the runs at a level of the varied parameter.
+        """Return the plan of the runs at one level of the varied parameter.
 
         Raises
         ------
@@ -86,12 +88,12 @@ class Runs:
         return made
 
     def __call__(self, level: float, seeds: Sequence[int]) -> NDArray[np.float64]:
-        """Return the column for every seed, shape (N,).
+        """Return the value of the column for each seed, shape (N,).
 
         Raises
         ------
         InputError
-            If something given is wrong, or a run fails.
+            If an argument is invalid, or a run fails.
         """
         made = self.plan(level, seeds)
         done = run(made, self.folder, processes=self.processes, watcher=self.watcher)

@@ -1,7 +1,7 @@
 """The arms of a design, made from factors, lists and files.
 
 A factor is either a parameter (`layout.robots`, `controllers.psa`, or just `scenario` for the whole
-file) with its levels, or a user-defined name, each of whose levels sets several parameters.
+file) or a user-defined name. Each level of a user-defined factor sets one or more parameters.
 """
 
 from __future__ import annotations
@@ -44,21 +44,22 @@ Overrides = list[tuple[list[str], Any]]
 
 @dataclass(frozen=True)
 class Arm:
-    """One way to run a warehouse.
+    """One configuration that is simulated.
 
     Attributes
     ----------
     name
         Name, unique in the design.
     levels
-        Level of each factor as shown in tables: a number, a string or a boolean, or None if neither
+        Level of each factor as shown in tables: a number, a string or a boolean; None if neither
         the arm nor the design's `base` sets the factor.
     inputs
-        Name or path of layout, scenario and controllers.
+        Names or paths of the layout, the scenario and the controllers.
     overrides
-        Parameters that replace values in these files, as pairs of path and value.
+        Parameters that replace values in these inputs: pairs of a key (as a list of words) and a
+        value.
     pacing
-        How simulated time accounts for the computation of optimisers.
+        Pacing mode: how much simulated time the computations of optimisers take.
     digest
         Hash of everything that determines a run except its seed; empty until the inputs are read.
     """
@@ -80,14 +81,15 @@ class Level:
     shown
         Values shown in a result table, by column.
     settings
-        Values of the parameters that the level sets, by dotted path.
+        Values of the parameters that the level sets, by dotted key.
     name
-        The part of the arm's name that stands for the level.
+        Name of the level as a part of the arm's name.
     raw
         For each column, the values by which the design's `exclude` may refer to this level.
     of_grid
         Whether this is a level of a factor of the grid (the design's `factors`), not an entry of
-        the list of arms. In the arm's name, such a level stands after its factor (`factor=level`).
+        the list of arms. The arm's name contains a level of the grid as `factor=level`, and an
+        entry of the list by its name alone.
     """
 
     shown: dict[str, Any]
@@ -103,7 +105,7 @@ def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
     Parameters
     ----------
     folder
-        The design's folder, in which files are sought first.
+        The design's folder, which is searched first for files.
     """
     problems: list[str] = []
     factors = [_grid_factor(key, levels, problems) for key, levels in design.factors.items()]
@@ -130,7 +132,7 @@ def arms(design: DesignFile, folder: Path) -> tuple[list[Arm], list[str]]:
 
 
 def factor_names(keys: Iterable[str]) -> dict[str, str]:
-    """Return a short name for each factor: the shortest end of its path that is unique.
+    """Return a short name for each factor: the shortest unique ending of its key.
 
     A final `name` (of a rule) is left out: `controllers.psa.name` becomes `psa`.
     """
@@ -217,7 +219,7 @@ def _listed(design: DesignFile, folder: Path, problems: list[str]) -> list[Level
 def _fraction(
     combinations: list[tuple[Level, ...]], keys: list[str], path: Path, problems: list[str]
 ) -> list[tuple[Level, ...]]:
-    """Return the combinations that a file lists."""
+    """Return those combinations of levels that are listed in a file."""
     try:
         rows = _read_csv(path)
     except InputError as error:
@@ -238,7 +240,7 @@ def _fraction(
 
 
 def _told(combination: tuple[Level, ...], short: Mapping[str, str]) -> frozenset[tuple[str, str]]:
-    """Return factors and levels of a combination as a file would tell them."""
+    """Return the factors and levels of a combination as a file of combinations lists them."""
     levels = {key: value for level in combination for key, value in level.shown.items()}
     return frozenset(
         (name, "" if levels.get(key) is None else _compact(levels[key]))
@@ -252,7 +254,7 @@ def _read_arms(path: Path) -> list[Table]:
     Raises
     ------
     InputError
-        If it is missing or wrong.
+        If the file is missing or invalid.
     """
     if path.suffix.lower() == ".toml":
         table = read_toml(path)
@@ -269,12 +271,12 @@ def _read_arms(path: Path) -> list[Table]:
 
 
 def _read_csv(path: Path) -> list[dict[str, str]]:
-    """Read a table of texts.
+    """Read a .csv file; all cells are returned as text.
 
     Raises
     ------
     InputError
-        If it is missing or wrong.
+        If the file is missing or invalid.
     """
     try:
         text = read_bounded(path, LARGEST_MIB).decode("utf-8")
@@ -295,7 +297,7 @@ def _read_csv(path: Path) -> list[dict[str, str]]:
 
 
 def _cell(text: str) -> Any:
-    """Read a cell as TOML; a bare word is a text."""
+    """Read a cell as a TOML value; return it as text if it is not one."""
     try:
         return tomllib.loads(f"value = {text.strip()}")["value"]
     except tomllib.TOMLDecodeError:
@@ -321,7 +323,7 @@ def _key_problems(design: DesignFile, keys: list[str]) -> Iterator[str]:
 
 
 def _matches(rule: Table, combination: tuple[Level, ...]) -> bool:
-    """Whether each condition of an exclusion holds; it may name one level or a list of them."""
+    """Whether all conditions of an exclusion hold; each names one level or a list of levels."""
     raw = {key: values for level in combination for key, values in level.raw.items()}
     return bool(rule) and all(
         any(_same(one, known) for one in _as_list(wanted) for known in raw.get(key, []))
@@ -334,7 +336,7 @@ def _as_list(value: Any) -> list[Any]:
 
 
 def _same(first: Any, second: Any) -> bool:
-    """Compare two levels; true is not 1."""
+    """Whether two levels are equal; true and 1 are different."""
     return isinstance(first, bool) == isinstance(second, bool) and first == second
 
 
@@ -389,7 +391,7 @@ def _arm_name(combination: tuple[Level, ...], keys: list[str]) -> str:
 
 
 def anchored(given: str, folder: Path) -> str:
-    """Resolve the path of a file in the design's folder; leave other paths and names unchanged."""
+    """Return the path of a file in a folder if the file exists; otherwise, the text unchanged."""
     beside = folder / given
     try:
         return str(beside) if beside.is_file() else given
@@ -401,11 +403,11 @@ _FOUND: dict[str, Callable[[str, Path], str]] = {
     "name": references.anchored,
     "guidance": references.anchored_file,
 }
-"""Keys of a rule's table whose values may name files, and what finds these."""
+"""Keys of a rule's table whose values may name files, and the functions that find the files."""
 
 
 def _anchored_rule(path: list[str], value: Any, folder: Path) -> Any:
-    """Return a value so that the file it may name is found from everywhere."""
+    """Return a value of a parameter; if it names a file, with the absolute path of the file."""
     if path[0] != "controllers":
         return value
     if isinstance(value, dict):

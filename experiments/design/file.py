@@ -34,7 +34,7 @@ def _measure(name: str) -> str:
 
 
 def _goal(column: str, stated: Goal | None) -> Goal:
-    """Return the goal stated for a column, else that of the data dictionary."""
+    """Return the stated goal or, if none is stated, the column's goal in the data dictionary."""
     if stated is not None:
         return stated
     better = better_of(column)
@@ -50,13 +50,13 @@ Measure = Annotated[str, pydantic.AfterValidator(_measure)]
 
 
 class Strict(Model):
-    """Base class of the tables of a design file: numbers must be written as numbers."""
+    """Base class of the tables of a design file: a number must not be written as a string."""
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)
 
 
 class Best(Strict):
-    """The arms that continue in a stage: the best ones of the previous stage."""
+    """Selection of the arms of a stage: those with the best means in the previous stage."""
 
     best: int = Field(ge=1, description="number of arms")
     by: Measure = Field(description="column of the footprint whose means are compared")
@@ -70,7 +70,7 @@ class Best(Strict):
         return self
 
     def better(self) -> Goal:
-        """Return whether the column is maximised or minimised."""
+        """Return `max` or `min`: whether larger or smaller values of the column are better."""
         return _goal(self.by, self.goal)
 
 
@@ -104,12 +104,12 @@ class Select(Strict):
         return self
 
     def better(self) -> Goal:
-        """Return whether the column is maximised or minimised."""
+        """Return `max` or `min`: whether larger or smaller values of the column are better."""
         return _goal(self.column, self.goal)
 
 
 class Stage(Strict):
-    """One part of an experiment; the next one starts when it has ended.
+    """One of several successive parts of an experiment.
 
     All arms of a stage get the seeds of the stage; `until` or `select` may then add further seeds.
     """
@@ -213,7 +213,7 @@ class DesignFile(Strict):
         return self
 
     def seeds_of(self, stage: Stage | None = None) -> list[int]:
-        """Return the initial seeds of every arm in a stage: the stage's, or else the design's."""
+        """Return the initial seeds of a stage; if it states none, those of the design."""
         for given in (stage, self):
             if given is not None and given.seeds is not None:
                 return given.seeds
@@ -222,7 +222,7 @@ class DesignFile(Strict):
         return []
 
     def all_stages(self) -> list[Stage]:
-        """The stages; a design without stages has a single stage with all runs."""
+        """Return the stages; for a design without stages, a single stage with all runs."""
         return self.stages or [Stage(name="all")]
 
 
@@ -247,12 +247,12 @@ def _stage_problems(stages: list[Stage]) -> list[str]:
 
 
 def locate(name_or_path: str | Path) -> Path:
-    """Find the file for a path or for the name of a shipped design.
+    """Return the path of a design file, given this path or the name of a shipped design.
 
     Raises
     ------
     InputError
-        If neither exists; the message lists the shipped names.
+        If there is no such file and no such shipped design; the message lists the shipped designs.
     """
     path = Path(name_or_path)
     if path.is_file():
@@ -269,12 +269,12 @@ def read(path: Path) -> tuple[DesignFile, Table]:
 
     Returns
     -------
-    The design, and the table as written.
+    The validated design, and the contents of the file as a table.
 
     Raises
     ------
     InputError
-        If the file is invalid; one line lists every error with its key.
+        If the file is invalid; the message lists every error with its key.
     """
     table = config.read_toml(path)
     own_measures(table, path.parent)
@@ -287,7 +287,7 @@ def own_measures(table: Table, folder: Path) -> list[type[Measurement]]:
     Parameters
     ----------
     folder
-        Folder in which their files are sought first.
+        Folder that is searched first for the files of the measures.
 
     Raises
     ------

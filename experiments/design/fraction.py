@@ -5,10 +5,10 @@ Command: `python -m rmfs.experiments.design.fraction`.
 If the factors are the rules of several decision problems, the grid of all combinations has
 thousands of arms. For a screening, far fewer arms suffice to estimate the main effects, if the
 levels of the factors are well balanced among them. The arms are chosen such that the determinant of
-the information matrix of the main effects is large (D-optimality): the search starts from a random
-choice and repeatedly makes the exchange of one arm that increases the determinant most, until no
-exchange increases it (Fedorov 1972). The result is written to a file, so that the arms of a study
-do not depend on the machine.
+the information matrix of the main effects is large (D-optimality). The search starts from a random
+choice. In each step, it exchanges one chosen arm for another one, such that the determinant
+increases most; it ends when no exchange increases the determinant (Fedorov 1972). The result is
+written to a file, so that the arms of a study do not depend on the machine.
 """
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ IMPROVEMENT = 1e-9
 
 
 def main_effects(levels: Sequence[Sequence[object]]) -> NDArray[np.float64]:
-    """Return the model matrix of the main effects, a row per arm.
+    """Return the model matrix of the main effects, with one row per arm.
 
     Parameters
     ----------
     levels
-        Level of each factor, for each arm.
+        For each arm, the level of each factor.
 
     Returns
     -------
@@ -114,7 +114,7 @@ def d_optimal(rows: NDArray[np.float64], count: int, seed: int = 0) -> list[int]
 
 
 def efficiency(rows: NDArray[np.float64], chosen: Sequence[int]) -> float:
-    """Return the D-efficiency: information per row in the chosen rows, relative to all rows."""
+    """Return the D-efficiency: information per chosen row, relative to all rows."""
     part, whole = rows[list(chosen)], rows
     parameters = rows.shape[1]
     share = np.linalg.slogdet(part.T @ part)[1] - np.linalg.slogdet(whole.T @ whole)[1]
@@ -140,7 +140,7 @@ def to_csv(made: Sequence[Arm]) -> str:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Choose some arms of a design, regardless of its `only_file`, and write them to a file."""
+    """Choose arms of a design, regardless of its `only_file`; write them to a file."""
     parser = argparse.ArgumentParser(prog="python -m rmfs.experiments.design.fraction")
     parser.add_argument("design", help="a design file or the name of a shipped one")
     parser.add_argument("count", type=int, help="how many arms")

@@ -52,17 +52,18 @@ class Plan:
     Attributes
     ----------
     table
-        The contents of the design file, with the changes that `plan` was asked to make.
+        The contents of the design file, changed by the arguments `base` and `replications` of
+        `plan`.
     arms
         Arms in the order of the design.
     files
-        Hash of every input file, by its name.
+        Hash of every input file, by the file's name.
     problems
         Errors in the design's arms and inputs; a plan with errors cannot be run.
     measures
         The user's measures, as described by `rmfs.measure.registry.described`.
     source
-        The file from which the design was read.
+        The file from which the design was read, or another description of its origin.
     """
 
     design: DesignFile
@@ -75,7 +76,7 @@ class Plan:
 
     @cached_property
     def hash(self) -> str:
-        """Hash of the design's contents and of all its input files."""
+        """Hash of the design's contents, its input files and the digests of its arms."""
         told = {"design": self.table, "files": self.files, "arms": [a.digest for a in self.arms]}
         text = json.dumps(told, sort_keys=True, separators=(",", ":"), default=str)
         return hashlib.sha256(text.encode()).hexdigest()
@@ -87,7 +88,7 @@ class Plan:
 
     @property
     def short_names(self) -> dict[str, str]:
-        """A short name per factor."""
+        """Short names of the factors, by their keys."""
         return factor_names(self.factors)
 
     def arm(self, name: str) -> Arm:
@@ -108,8 +109,8 @@ class Plan:
     def seed(self, arm: Arm, replication: int) -> int:
         """Return the seed of a run.
 
-        With common random numbers, it is `replication`; otherwise, it is derived from `replication`
-        and the digest of the arm.
+        With common random numbers, the seed is `replication`. Otherwise, it is derived from
+        `replication` and the digest of the arm.
         """
         if self.design.common_random_numbers:
             return replication
@@ -150,7 +151,7 @@ class Plan:
             raise PlanError(self.source, self.problems)
 
     def save(self, folder: Path) -> None:
-        """Write the plan to the folder of the results; reading the results requires it."""
+        """Write the plan to the folder of the results, which cannot be read without the plan."""
         told = {
             "format": FORMAT,
             "hash": self.hash,
@@ -178,19 +179,20 @@ def plan(
     name_or_path
         A design file, or the name of a shipped one.
     base
-        Entries that replace or extend those of the design's table `base`.
+        Entries to add to the design's table `base`, or to replace in it.
     replications
         Number of seeds to use instead of the design's number; only for designs without stages. If
         the design lists its seeds, the first ones of the list are used.
     without
         Names of arms to leave out.
     told
-        Function called before each arm, with the number of arms done and the number of all arms.
+        Function called before each arm, with the number of finished arms and the number of all
+        arms.
 
     Raises
     ------
     InputError
-        If the file itself is invalid. Errors of arms are listed in `Plan.problems`.
+        If the design file is missing or invalid. Errors in arms are listed in `Plan.problems`.
     """
     path = design_file.locate(name_or_path)
     _, table = design_file.read(path)
@@ -223,7 +225,7 @@ def plan_of(
     table
         The contents of a design file.
     folder
-        Folder in which files are sought first.
+        Folder that is searched first for files.
     source
         Origin of the design, for error messages.
     """
@@ -279,12 +281,12 @@ def load(folder: Path) -> Plan:
 
 
 def _arm(told: dict[str, Any]) -> Arm:
-    """Return an arm as it was written.
+    """Return an arm that was read from a saved plan.
 
     Raises
     ------
     KeyError, TypeError, ValueError
-        If it is none.
+        If the table does not describe an arm.
     """
     overrides = [(list(keys), value) for keys, value in told["overrides"]]
     arm = Arm(**(told | {"overrides": overrides}))
@@ -299,12 +301,12 @@ def _arm(told: dict[str, Any]) -> Arm:
 
 
 def _absolute_folder(given: str) -> str:
-    """Say where a folder is, for workers elsewhere; empty stays empty."""
+    """Return the absolute path of a folder, for workers in other folders; empty stays empty."""
     return str(Path(given).absolute()) if given else ""
 
 
 def _absolute(given: str) -> str:
-    """Name a file so that it is found from everywhere; leave names of shipped inputs alone."""
+    """Return the absolute path of a file; names of shipped inputs remain unchanged."""
     return str(Path(given).absolute()) if Path(given).is_file() else given
 
 
@@ -316,7 +318,7 @@ def _named(names: list[str]) -> str:
 
 
 def _twins(made: list[Arm]) -> list[str]:
-    """Tell arms that are the same warehouse under two names: their runs would count twice."""
+    """Return an error for all arms with the same digest: their runs would count twice."""
     groups: dict[str, list[str]] = {}
     for arm in made:
         groups.setdefault(arm.digest, []).append(arm.name)

@@ -51,8 +51,8 @@ class Resolver:
     Attributes
     ----------
     measures
-        The user's own measures. Their code determines columns of the results, so it is part of the
-        digest.
+        The user's own measures. The digest covers their code, which determines columns of the
+        results.
     files
         Hash of every file read so far, by the name that `file_name` returns.
     """
@@ -100,7 +100,7 @@ class Resolver:
     def _part(
         self, part: str, given: str, overrides: Overrides, load: Callable[..., Any]
     ) -> tuple[str, str]:
-        """Return digest and problem of one input."""
+        """Return the digest of one input and its error message; one of the two is empty."""
         known = json.dumps([part, given, overrides], default=str)
         if known not in self._parts:
             try:
@@ -115,7 +115,7 @@ class Resolver:
         return self._parts[known]
 
     def _meaning(self, loaded: Any) -> str:
-        """Return the digest of a loaded input, whatever its name and description."""
+        """Return the digest of a loaded input; its name and description do not matter."""
         if isinstance(loaded, control.ControllerSettings):
             table = loaded.to_table() | {"sources": self._sources(loaded)}
         elif isinstance(loaded, scenarios.Scenario):
@@ -126,7 +126,7 @@ class Resolver:
         return _hash(self._with_files(table))
 
     def _sources(self, settings: ControllerSettings) -> list[str]:
-        """Return the files that rules of users are made of, whatever they are called."""
+        """Return the source files of the user's rules, in an order independent of their names."""
         found: dict[Path, str] = {}
         for rule in settings.rules():
             if rule not in self._made_of:
@@ -154,7 +154,7 @@ _LOADERS: dict[str, Callable[..., Any]] = {
 
 
 def of_pacing(overrides: Overrides) -> Overrides:
-    """Return those overrides that concern pacing."""
+    """Return the overrides of parameters of the pacing."""
     return [(path, value) for path, value in overrides if path[0] == "pacing"]
 
 
@@ -164,7 +164,7 @@ def load(inputs: dict[str, str], overrides: Overrides) -> Inputs:
     Raises
     ------
     InputError
-        If one of them is invalid.
+        If an input is invalid.
     """
     loaded = {
         part: loader(
@@ -184,14 +184,14 @@ def file_hash(path: Path) -> str:
 
 
 def file_name(path: Path) -> str:
-    """Return the name of an input file in plans; a shipped file has the same name everywhere."""
+    """Return the name of an input file in plans: for shipped files, the same on every machine."""
     if path.is_relative_to(instances.ROOT):
         return f"{_SHIPPED}{path.relative_to(instances.ROOT).as_posix()}"
     return str(path.absolute())
 
 
 def present_hash(name: str) -> str:
-    """Return the present hash of the file that a plan names; empty if the file does not exist."""
+    """Return the current hash of a file named in a plan; empty if the file does not exist."""
     shipped = name.startswith(_SHIPPED)
     path = instances.ROOT / name.removeprefix(_SHIPPED) if shipped else Path(name)
     return file_hash(path) if path.is_file() else ""

@@ -30,8 +30,8 @@ class Wanted:
     arm
         Name of the arm.
     replication
-        With common random numbers, the seed of the run; without them, the number from which, with
-        the arm's digest, the seed is derived (see `Plan.seed`).
+        With common random numbers, the seed of the run. Without them, the seed is derived from this
+        number and the arm's digest (see `Plan.seed`).
     """
 
     stage: str
@@ -41,17 +41,17 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Schedule:
-    """The runs needed so far.
+    """The runs that a design requires, given the results so far.
 
     Attributes
     ----------
     runs
-        These runs, without duplicates, in the order in which they should be made.
+        The runs without duplicates, in the order in which they should be made.
     complete
         Whether no further runs will be added.
     remarks
-        What the stages have decided from the results, one line per decision: for example, which
-        arms take part in the next stage.
+        Decisions of the stages based on the results, one line each: for example, which arms take
+        part in the next stage.
     """
 
     runs: list[Wanted]
@@ -60,7 +60,7 @@ class Schedule:
 
 
 def columns(plan: Plan) -> list[str]:
-    """Return the columns of results that the stages use."""
+    """Return the footprint columns on which the stages base their decisions."""
     named: dict[str, None] = {}
     for stage in plan.design.stages:
         for rule in (stage.until, stage.select):
@@ -74,12 +74,12 @@ def columns(plan: Plan) -> list[str]:
 def schedule(
     plan: Plan, results: pd.DataFrame, failed: Collection[tuple[str, int]] = ()
 ) -> Schedule:
-    """Return the runs needed so far.
+    """Return the runs that a design requires, given the results so far.
 
     Parameters
     ----------
     results
-        Finished runs: columns `arm`, `replication` and those that `columns` returns.
+        Finished runs, with the columns `arm`, `replication` and all that `columns` returns.
     failed
         Failed runs, as pairs of arm and replication; no results are expected from them.
     """
@@ -115,12 +115,12 @@ class _Known:
         return all((arm, r) in self.row or (arm, r) in self.failed for r in replications)
 
     def values(self, arm: str, replications: list[int], column: str) -> list[float]:
-        """Return the values of the runs that are finished; empty cells are left out."""
+        """Return the values of a column in the finished runs; empty cells are left out."""
         rows = [self.row[arm, r] for r in replications if (arm, r) in self.row]
         return [float(value) for value in self.results[column].iloc[rows].dropna()]
 
     def without_value(self, arm: str, replication: int, column: str) -> bool:
-        """Whether this run will never tell a value."""
+        """Whether this run has ended or failed without a value in the column."""
         settled = self.settled(arm, [replication])
         return settled and not self.values(arm, [replication], column)
 
@@ -128,7 +128,7 @@ class _Known:
 def _of_stage(
     stage: Stage, arms: list[str], seeds: list[int], known: _Known, remarks: list[str]
 ) -> tuple[list[tuple[str, int]], bool]:
-    """Return the runs of a stage so far, and whether it is over."""
+    """Return the runs that a stage requires so far, and whether the stage is complete."""
     # seed by seed: whatever is finished so far can be compared
     wanted = [(arm, seed) for seed in seeds for arm in arms]
     if not all(known.settled(arm, seeds) for arm in arms):
@@ -167,7 +167,7 @@ def _until(
 def _select(
     rule: Select, name: str, arms: list[str], seeds: list[int], known: _Known, remarks: list[str]
 ) -> tuple[list[tuple[str, int]], bool]:
-    """Give the arms that may be the best one further seeds until one is left."""
+    """Give further seeds to all arms that may still be the best, until one is left."""
     sound = [arm for arm in arms if len(known.values(arm, seeds, rule.column)) == len(seeds)]
     if not sound:
         remarks.append(f"stage {name}: nothing to select from, as all arms have failed runs")
@@ -204,7 +204,7 @@ def _select(
 
 
 def _best(rule: Best, arms: list[str], seeds: list[int], known: _Known) -> list[str]:
-    """Return the arms with the best means over the seeds of the stage before, in design order."""
+    """Return the arms with the best means over the previous stage's seeds, in design order."""
     means: dict[str, Any] = {
         arm: pd.Series(known.values(arm, seeds, rule.by), dtype=float).mean() for arm in arms
     }

@@ -31,7 +31,7 @@ def effects(
     Parameters
     ----------
     axes
-        One for each factor; they should share their y axis.
+        One `Axes` object for each factor; all of them should share the y axis.
     names
         Displayed names of the factors. Default: as in the frame.
     """

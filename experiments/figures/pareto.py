@@ -1,4 +1,4 @@
-"""Pareto plot of two goals, with the arms that no other arm dominates."""
+"""Pareto plot of two measures, with the arms that no other arm dominates."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ ARROWS = {"more": ("→", "↑"), "less": ("←", "↓")}
 def front(x: pd.Series, y: pd.Series, x_goal: Goal, y_goal: Goal) -> list[str]:
     """Return the arms that no other arm dominates, sorted by x.
 
-    An arm dominates another if it is at least as good in both goals and better in one.
+    An arm dominates another if it is at least as good in both measures and better in one.
 
     Parameters
     ----------
@@ -52,12 +52,13 @@ def pareto(
     confidence: float = 0.95,
     by: str = "arm",
 ) -> list[str]:
-    """Draw the means of two columns with their intervals, and the Pareto front.
+    """Draw the means of two columns for each arm with their intervals, and the Pareto front.
 
     Parameters
     ----------
     x_goal, y_goal
-        Whether more or less of a column is better. Default: from the data dictionary.
+        Whether `more` or `less` is better, for each of the two columns. Default: from the data
+        dictionary.
 
     Returns
     -------
@@ -101,7 +102,9 @@ def pareto(
 
 
 def goal_of(column: str, stated: Goal | None = None) -> Goal:
-    """Return the goal stated for a column or, if none is stated, that of the data dictionary.
+    """Return `more` or `less`: which of them is better for a column.
+
+    This is `stated` or, if `stated` is None, the goal in the data dictionary.
 
     Raises
     ------
@@ -122,7 +125,7 @@ def goal_of(column: str, stated: Goal | None = None) -> Goal:
 def _at_same_place(
     best: list[str], line: NDArray[np.float64]
 ) -> dict[tuple[float, float], list[str]]:
-    """Return the arms of the front by their point, so that no label covers another."""
+    """Group the arms of the front that have the same point, so that no label covers another."""
     places: dict[tuple[float, float], list[str]] = {}
     for arm, (x_mean, y_mean) in zip(best, line, strict=True):
         places.setdefault((float(x_mean), float(y_mean)), []).append(str(arm))

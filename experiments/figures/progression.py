@@ -35,7 +35,7 @@ def progression(
     series
         The table `series` of runs (`experiments.load(DIR, table="series")`).
     column
-        A count in each interval of the table, such as `orders_completed`.
+        Column of `series` that counts events per interval, such as `orders_completed`.
     bin_s
         Time covered by one point, in s. Default: an hour.
     label
@@ -58,7 +58,7 @@ def progression(
 
 
 def per_bin(series: pd.DataFrame, column: str, bin_s: float) -> pd.DataFrame:
-    """Return the hourly rate of a count in each run and each bin of time.
+    """Return the hourly rate of a count for each run and each bin of time.
 
     The columns are `arm`, `replication`, `hour` (the middle of the bin) and `rate`. An incomplete
     last bin is left out.

@@ -25,9 +25,9 @@ FORMATS = ("png", "pdf", "svg")
 
 
 def levels(frame: pd.DataFrame, factor: str) -> dict[str, pd.DataFrame]:
-    """Return the rows with each level of a factor; levels are in the order of first appearance.
+    """Return the rows of each level of a factor, with levels in the order of first appearance.
 
-    An empty cell counts as the level "none": the arm leaves the parameter as in the input file.
+    Empty cells count as the level "none": their arms do not set the parameter.
     """
     text = frame[factor].astype(object).map(lambda level: "none" if pd.isna(level) else str(level))
     return {str(level): frame[text == level] for level in text.unique()}
@@ -42,7 +42,7 @@ def saving(
     Parameters
     ----------
     path
-        A .png, .pdf or .svg file. Equal figures give identical files. None: no file.
+        A .png, .pdf or .svg file; equal figures give identical files. If None, no file is written.
     width, height
         Size of the figure, in inches.
     note
@@ -51,7 +51,7 @@ def saving(
     Raises
     ------
     InputError
-        If the file has none of these three suffixes.
+        If the suffix of the file is not .png, .pdf or .svg.
     """
     import matplotlib as mpl
     from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -1,4 +1,4 @@
-"""Studies, including reproduced experiments from the literature: one module and command each.
+"""Studies, each with a module and a command; some reproduce experiments from the literature.
 
 `python -m rmfs.experiments.papers.NAME` runs the design of that name, prints its results, and
 writes tables and pictures with their provenance to `results/published`.

@@ -56,18 +56,18 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
 
 
 def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = COLUMNS) -> Table:
-    """Return a row of means over seeds for each group of runs.
+    """Return a table of means over seeds, with one row for each group of runs.
 
-    The row shows the means of `columns` with intervals, and without intervals the means of the
-    optimisers' decision time, of the four columns `*_decision_share` of the footprint, and of the
-    bound on units per hour.
+    The means of `columns` are shown with confidence intervals. Further columns show means without
+    intervals: of the optimisers' decision time, of the four columns `*_decision_share` of the
+    footprint, and of the bound on units per hour.
 
     Parameters
     ----------
     frame
         As `completed` returns it.
     groups
-        Columns; runs with the same values in all of them form a group.
+        Names of columns; runs with the same values in all these columns form a group.
     columns
         Measures shown with intervals.
     """
@@ -101,16 +101,17 @@ def gains(
     baseline: str,
     columns: Sequence[str] = (*RATES, *EFFORT),
 ) -> Table:
-    """Return the differences of all controllers to the baseline, in percent, paired by seed.
+    """Return the differences between all controllers and the baseline, in percent, paired by seed.
 
     Parameters
     ----------
     frame
         As `completed` returns it.
     groups
-        Columns. Controllers are compared separately for each combination of these columns' values.
+        Names of columns. Controllers are compared separately for each combination of the values of
+        these columns.
     baseline
-        Level of `controllers` that the others are compared with.
+        Level of the column `controllers` with which all other levels are compared.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for levels, runs in frame.groupby(list(groups), sort=False):
@@ -130,15 +131,16 @@ def gains(
 def of_optimiser(
     frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = (*RATES, *EFFORT)
 ) -> Table:
-    """Return the differences of optimisers to their own start rules, in percent, paired by seed.
+    """Return the differences between optimisers and their start rules, in percent, paired by seed.
 
     Parameters
     ----------
     frame
         As `completed` returns it. Each level of its column `controllers` is compared with the level
-        of the same name plus the suffix `START`, if there is one.
+        of the same name plus the suffix `START`; levels without such a counterpart are left out.
     groups
-        Columns. Controllers are compared separately for each combination of these columns' values.
+        Names of columns. Controllers are compared separately for each combination of the values of
+        these columns.
     columns
         Measures to compare.
     """
@@ -198,9 +200,9 @@ def too_few(frame: pd.DataFrame) -> list[str]:
 
 
 def require_optimised(study: Study, shown: pd.DataFrame | None = None) -> None:
-    """Refuse results in which optimisers made too few decisions.
+    """End the study with an error if optimisers made too few decisions in a run.
 
-    With the option `--smoke`, runs end before optimisers decide much, so there is only a warning.
+    With the option `--smoke`, runs are too short for many decisions, so there is only a warning.
 
     Parameters
     ----------

@@ -1,15 +1,15 @@
 """The cost of charging: robots needed with each kind of battery recovery; rules of CA compared.
 
-The study runs fleets of different sizes: by the design `charging` at the default site (the shipped
-layout `default`) or, with `--large`, by the design `charging-large` at the large site (layout
+The study simulates fleets of different sizes. It uses the design `charging` at the default site
+(layout `default`) or, with `--large`, the design `charging-large` at the large site (layout
 `large`). There are four cases: robots without batteries, plug-in chargers, swap stations, and queue
 waypoints that charge waiting robots. The study publishes units per hour, the number of robots
 needed for 95 % of the capacity of the pick stations (interpolated between fleets, seed by seed),
 and by how many percent this number exceeds the number needed without batteries.
 
-With `--rules`, there is a single fleet size instead, and charge assignment (CA) by each of the
-rules and by the optimiser. The study then publishes differences to runs without batteries and to
-runs under the rule `threshold`, paired by seed. The design is `charging-rules` or, with `--demand`,
+With `--rules`, a single fleet size is simulated, with charge assignment (CA) by each of the rules
+and by the optimiser. The study then publishes differences from runs without batteries and from runs
+under the rule `threshold`, paired by seed. The design is `charging-rules` or, with `--demand`,
 `charging-demand`, in which periods of high and low demand alternate.
 
 For comparison, Zou et al. (2018, doi 10.1016/j.ejor.2017.12.008) report that the number of robots
@@ -59,8 +59,8 @@ def robots_for(robots: Sequence[float], share: Sequence[float], enough: float = 
     robots
         Sizes of fleets, ascending.
     share
-        Share that each fleet reaches. A running maximum is used, so that noise cannot make it
-        decrease.
+        Share of the capacity that each fleet reaches. Its running maximum is used, so that noise
+        cannot make the share decrease with the fleet size.
     enough
         Share to be reached.
 
@@ -126,7 +126,7 @@ def _figures(column: str, values: pd.Series) -> dict[tuple[str, str], float]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the study and publish it."""
+    """Run the study and publish its results."""
     options = parser("charging", __doc__)
     options.add_argument("--large", action="store_true", help="use the large site instead")
     options.add_argument("--rules", action="store_true", help="compare the rules of CA instead")
@@ -149,7 +149,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _publish_rules(study: Study, name: str) -> None:
-    """Publish what each rule reaches, and differences to no batteries and to the start rule."""
+    """Publish the means of each rule, and differences from no batteries and the start rule."""
     gained = study.frame["energy_charged_kwh"].astype("float64") - study.frame["energy_kwh"]
     frame = study.frame.assign(battery_gain_kwh=gained)
     shown = ("units_per_h", "order_turnover_mean_s", *OF_BATTERIES, "decision_wall_s")
@@ -162,7 +162,7 @@ def _publish_rules(study: Study, name: str) -> None:
 
 
 def _real(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return counts as real numbers, of which means can be taken."""
+    """Return the frame with counts as real numbers, so that means can be taken."""
     return frame.astype(dict.fromkeys(OF_BATTERIES, "float64"))
 
 

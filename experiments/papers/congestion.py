@@ -1,10 +1,11 @@
-"""The gain of decisions that know where robots have recently been delayed.
+"""The gain of decisions that consider where robots have recently been delayed.
 
-The design `congestion` lets PSA, and TA by linear assignment, add the delay expected from
-congestion to travel times, at two sites with quick stations, where robots are scarce or the aisles
-full. The study publishes the change of units per hour, of the delay per trip and of the distance
-per unit, paired by seed. It also publishes the share of trip time that is delay, which is the
-most that such decisions could save, and the share of their time for which robots have no task.
+In the design `congestion`, PSA and TA (by linear assignment) decide with and without adding the
+delay expected from congestion to travel times. Two sites with quick stations are simulated, each
+with few robots and with so many that the aisles are full. The study publishes the changes of units
+per hour, of the delay per trip and of the distance per unit, paired by seed. It also publishes the
+share of trip time that is delay, which is an upper bound on what such decisions can save, and
+the share of time for which robots have no task.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ def wide(frame: pd.DataFrame, column: str) -> pd.DataFrame:
 
 
 def levels(frame: pd.DataFrame) -> Table:
-    """Return units per hour and delay of the arms that know nothing, by site.
+    """Return units per hour and delay of the arms that do not consider congestion, by site.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ def levels(frame: pd.DataFrame) -> Table:
 
 
 def gains(frame: pd.DataFrame) -> Table:
-    """Return the changes by knowledge of congestion, paired by seed, by site and arm."""
+    """Return the changes caused by considering congestion, paired by seed, by site and arm."""
     rows: Rows = {}
     for site, runs in frame.groupby(SITE, sort=False):
         of = {column: wide(runs, column) for column in COLUMNS}

@@ -1,11 +1,12 @@
-"""The library of decisions: best known results, and a comparison of solvers.
+"""The library of decisions: best known values, and a comparison of solvers.
 
-The study publishes, by family and size of the questions, how many best known values are proven
-optimal, and how far the answers given in runs are from the best known values. It also compares
-solution methods, from their times in `decision-times.csv`. With `--time`, this table is first
-measured: every method solves some questions of each family under several limits of work, as in
-`rmfs decisions profile`. Only the families in `TIMED` are timed; in the others, all best known
-values are proven optimal.
+A question asks an optimiser to take one decision; questions of the same kind form a family (docs:
+decisions). The study publishes, by family and size of the questions, how many best known values are
+proven optimal, and how far the answers given in runs are from the best known values. It also
+compares solution methods, based on the times in `decision-times.csv`. With `--time`, these times
+are first measured: every method answers some questions of each family under several limits of
+work, as in `rmfs decisions profile`. Only the families in `TIMED` are timed; in the other families,
+all best known values are proven optimal.
 """
 
 from __future__ import annotations
@@ -104,12 +105,12 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def state(known: pd.DataFrame) -> pd.DataFrame:
-    """Return, by family and size, the numbers of questions and proven optima, and gaps to bounds.
+    """Return numbers of questions and of proven optima, and gaps to bounds, by family and size.
 
     Parameters
     ----------
     known
-        As `Library.frame` returns it.
+        Table of the questions and their best known values, as `Library.frame` returns it.
     """
     groups = known.groupby(["family", "size"], sort=False)
     found = pd.DataFrame(
@@ -125,12 +126,14 @@ def state(known: pd.DataFrame) -> pd.DataFrame:
 
 
 def online(library: Library) -> pd.DataFrame:
-    """Compare answers given in runs, under controllers' limits of work, with the best known ones.
+    """Return gaps between answers given in runs and best known values, by family and size.
+
+    In the runs, the controllers' limits of work applied.
 
     Parameters
     ----------
     library
-        The library.
+        The library of questions.
     """
     rows = []
     for row in library.rows.values():
@@ -159,12 +162,12 @@ def online(library: Library) -> pd.DataFrame:
 
 
 def compared(table: pd.DataFrame) -> pd.DataFrame:
-    """Return mean primal integrals and times by family, size and method.
+    """Return mean primal integrals (docs: decisions) and times, by family, size and method.
 
     Parameters
     ----------
     table
-        As `with_gaps` returns it, with the additional column `size`.
+        Timed answers, as `with_gaps` returns them, with the additional column `size`.
     """
     areas = integrals(table)
     areas["size"] = areas["question"].map(table.groupby("question")["size"].first())
@@ -208,7 +211,7 @@ def _by_size(found: pd.DataFrame) -> pd.DataFrame:
 
 
 def publish_table(path: Path, rows: pd.DataFrame | list[dict[str, Any]], **more: Any) -> None:
-    """Publish a table as a page, with a provenance file beside it, and print the table."""
+    """Publish a table as a Markdown page with a provenance file, and print the table."""
     frame = pd.DataFrame(rows)
     _publish(path, frame.to_markdown(index=False) + "\n", **more)
     print(frame.to_string(index=False))
@@ -231,7 +234,7 @@ def _record(path: Path, **more: Any) -> None:
 
 
 def _picture(path: Path, table: pd.DataFrame, kind: str) -> None:
-    """Draw a profile for each family that was timed."""
+    """Draw a performance profile or data profile (`kind`) for each family that was timed."""
     families = list(dict.fromkeys(table["family"]))
     across = min(4, len(families))
     down = math.ceil(len(families) / across)

@@ -1,10 +1,10 @@
 """Questions of the library of decisions, answered with default and other settings.
 
 Each question of the families `planning` and `sequence` (sequences of tasks for robots) is answered
-once under each setting in `SETTINGS`, which gives the method and its limits. Everything else is as
-in the run in which a controller asked the question; for example, a search starts from the plan that
-the controller had. The study publishes the primal gap to the best known value, and the processor
-time.
+once under each setting in `SETTINGS`. A setting consists of a method and its limits. Everything
+else is as in the run in which a controller asked the question; for example, a search starts from
+the plan that the controller had. The study publishes the primal gap (relative difference to the
+best known value) and the processor time.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def planned(steps: Callable[[int], int]) -> Callable[[Decision], dict[str, Any]]
 
 
 def _routed(method: str, work_s: float) -> Callable[[Decision], dict[str, Any]]:
-    """Route by CP-SAT or column generation under a limit of work."""
+    """Return a function that gives the method and a limit of work, for the family `sequence`."""
     limits = asdict(Limits(deterministic_s=work_s, gap=0.01))
     return lambda decision: {"method": method, "limits": limits}
 
@@ -113,7 +113,7 @@ def answered(library: Library, sizes: tuple[str, ...]) -> Iterator[dict[str, Any
     Parameters
     ----------
     library
-        The library.
+        The library of questions.
     sizes
         Sizes of the questions to answer.
     """
@@ -144,7 +144,7 @@ def compared(rows: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     rows
-        Rows as `answered` yields them.
+        One row for each question and setting, as `answered` yields them.
     """
     groups = rows.groupby(["family", "setting", "size"], sort=False)
     return pd.DataFrame(

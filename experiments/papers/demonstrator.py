@@ -1,14 +1,13 @@
 """The demonstrator: one to four table-top robots (Merschformann, Xie, Li 2018, section 4).
 
 In the paper, four small robots drive on a grid of 36 cells of 0.45 m, with one replenishment
-station, one pick station and six pods; the top speed of the robots is 0.21 m/s, the acceleration
-0.5 m/s2, and a full turn takes 5.5 s. The paper reports no throughput. Here the same warehouse is
-simulated with one to four robots. The table shows units per hour and other measures for each number
-of robots; the independent checker proves every run safe.
+station, one pick station and six pods. The top speed of the robots is 0.21 m/s, their acceleration
+is 0.5 m/s2, and a full turn takes 5.5 s. The paper reports no throughput. Here the same warehouse
+is simulated with one to four robots. The table shows units per hour and other measures for each
+number of robots; the independent checker proves every run safe.
 
-With `--reference DIR`, where DIR contains the public instances of RAWSim-O, their layout
-`office-4bot` is used instead; it has the same waypoints and robots, but four pods and more order
-slots.
+With `--reference DIR` (the folder of RAWSim-O's public instances), RAWSim-O's layout `office-4bot`
+is used instead; it has the same waypoints and robots, but four pods and more order slots.
 """
 
 from __future__ import annotations
@@ -35,7 +34,7 @@ COLUMNS = (
 
 
 def picture(study: Study) -> Path:
-    """Draw a heat map of the visits of robots to waypoints, for the arm with four robots."""
+    """Draw a heat map of how often robots visit each waypoint, for the arm with four robots."""
     path = study.place("demonstrator-heat.png")
     last = study.plan.arms[-1].name
     heat = study.table("heat")

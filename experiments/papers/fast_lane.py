@@ -4,9 +4,10 @@ The inputs correspond to RAWSim-O's instances `fastlane`: layout and controllers
 SKUs have the same distribution. Means over ten seeds are compared with two runs of RAWSim-O, one
 with the fast lane and one without. RAWSim-O plans paths by FAR (flow annotation replanning), and
 its robots wait for the next step of the simulation before every straight drive, lift and set-down.
-Here, each setting of the fast lane is run in three arms: with the planner `time-windows`, with FAR,
-and with FAR where the mean of that wait is added to the times for turning and lifting. Comparing
-the three arms separates the effect of the rules from that of driving.
+Here, both settings of the fast lane are run in three variants of driving: with the planner
+`time-windows`; with FAR; and with FAR and longer times for turning and lifting, which include the
+mean of this wait. The comparison of the variants separates the effect of the rules from that of
+driving.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ THEIRS = {
 
 
 def beside(frame: pd.DataFrame) -> Table:
-    """Return the means of every arm, and by how many percent they differ from RAWSim-O's values."""
+    """Return the means of every arm, and their differences from RAWSim-O's values in percent."""
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for (driving, lane), runs in frame.groupby([DRIVING, LANE], sort=False):
         row = {("seeds", ""): float(len(runs))}
@@ -52,7 +53,7 @@ def beside(frame: pd.DataFrame) -> Table:
 
 
 def gain(frame: pd.DataFrame, columns: Sequence[str] = COLUMNS) -> Table:
-    """Return the gain of the fast lane, in percent, paired by seed."""
+    """Return the gain in each measure by the fast lane, in percent, paired by seed."""
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for driving, runs in frame.groupby(DRIVING, sort=False):
         row: dict[tuple[str, str], float] = {}

@@ -3,9 +3,9 @@
 The study runs fleets of different sizes at the small site (the shipped layout `small`), with a
 backlog, and measures the first hour. It shows units per hour and their proven bound by fleet size,
 and the smallest fleet with which each controller reaches 95 % of the capacity of the pick stations.
-With `--later`, the third hour is measured instead, because a small fleet initially picks stock that
-it has no time to replenish; in further runs, orders arrive over time instead of a constant backlog.
-Each of the two variants takes about 0.3 CPU hours.
+A small fleet initially picks stock that it has no time to replenish. With `--later`, the third hour
+is therefore measured instead; further runs measure the first hour with orders that arrive over time
+instead of a backlog. The study takes about 0.3 CPU hours, with or without `--later`.
 """
 
 from __future__ import annotations
@@ -56,16 +56,16 @@ def needed(frame: pd.DataFrame, groups: Sequence[str], enough: float = ENOUGH) -
     Parameters
     ----------
     frame
-        As `completed` returns it.
+        Results of the runs, as `completed` returns them.
     groups
-        Columns; runs with the same values in all of them form a group.
+        Names of columns; runs with the same values in all these columns form a group.
     enough
         Share of the stations' capacity to be reached.
 
     Returns
     -------
-    One row per group: `robots` (nan if no fleet of the design suffices), and the share of the
-    stations' capacity that this fleet reaches.
+    One row per group: the number of robots of this fleet, and the share of the stations' capacity
+    that it reaches. Both are nan if no fleet of the design suffices.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for levels, runs in frame.groupby(list(groups), sort=False):
@@ -97,7 +97,7 @@ def picture(
     ----------
     clairvoyant
         Upper bounds on units per hour, by fleet size, that hold even for controllers that know all
-        future orders. Default: the bounds in `frame` are drawn instead.
+        future orders. If None, the bounds in `frame` are drawn instead.
     """
     path = study.place(name)
     with saving(path, 6.0, 4.0) as figure:

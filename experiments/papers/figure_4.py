@@ -1,7 +1,7 @@
 """Figure 4 of Merschformann, Xie and Li (2018): a layout with two stations of each kind.
 
-Nothing is simulated: the layout is generated and drawn. The provenance of the picture states how
-many waypoints, storage locations, pods and so on the layout has.
+Nothing is simulated: the layout is generated and drawn. The provenance file of the picture states
+the numbers of waypoints, storage locations, pods and other elements of the layout.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ OVERRIDES: list[tuple[list[str], object]] = [
 
 
 def counts(layout: layouts.Layout) -> dict[str, object]:
-    """Return how many waypoints, pods and so on a layout has, and whether it is well-formed."""
+    """Return the numbers of waypoints, pods etc. of a layout, and whether it is well-formed."""
     return {
         "waypoints": layout.waypoints,
         "edges": len(layout.edge_target),
@@ -41,7 +41,7 @@ def counts(layout: layouts.Layout) -> dict[str, object]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Draw the picture and write its provenance."""
+    """Draw the picture and write its provenance file."""
     options = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     options.add_argument("--published", type=Path, default=PUBLISHED)
     given = options.parse_args(arguments)

@@ -1,11 +1,11 @@
-"""Figure 5a: a PSA rule exchanged in the middle of a day (Merschformann, Xie, Li 2018).
+"""Figure 5a: the PSA rule is exchanged in the middle of a day (Merschformann, Xie, Li 2018).
 
-The paper shows one run of 24 h in which random storage is replaced by nearest storage: from then
-on, the robots drive less and complete more orders. Here three arms are run with ten seeds on a
-layout of the same size as the layout MaTiMilli of RAWSim-O: one with the exchange, one with random
-storage throughout, and one with nearest storage throughout. The effect of the exchange is the
-difference in differences, paired by seed: second half minus first half in the arm with the
-exchange, minus the same difference with random storage throughout.
+The paper shows one run of 24 h in which nearest storage replaces random storage after half of the
+time: from then on, the robots drive less and complete more orders. Here three arms are run with ten
+seeds on a layout of the same size as the layout MaTiMilli of RAWSim-O: one with the exchange, one
+with random storage throughout, and one with nearest storage throughout. The effect of the exchange
+is a difference in differences, paired by seed: the difference between the second and the first half
+in the arm with the exchange, minus that in the arm with random storage throughout.
 
 With `--reference DIR` (the folder of RAWSim-O's public instances), the original layout
 `DIR/mati/MaTiMilli.xinst` is used instead; the names of published files then end in `-reference`.
@@ -39,14 +39,14 @@ SETTLED_S = 3600.0
 def halves(series: pd.DataFrame, *, settle_s: float = SETTLED_S) -> pd.DataFrame:
     """Return each run's orders, units and metres per hour before and after the exchange.
 
-    In arms without an exchange, the halves of the run are meant.
+    For arms without an exchange, `before` and `after` are the first and the second half of the run.
 
     Parameters
     ----------
     series
         The time series of the runs.
     settle_s
-        Time left out at the beginning of each half, in s. Default: an hour.
+        Time left out at the beginning of each half, in s.
 
     Returns
     -------
@@ -65,9 +65,10 @@ def differences(rated: pd.DataFrame, confidence: float = 0.95) -> pd.DataFrame:
 
     Returns
     -------
-    Means of two arms (random storage throughout; the exchange) in each half; the difference in
-    differences with its interval, p value and number of seeds; and, as `relative`, this difference
-    divided by the mean of the second half with random storage throughout.
+    The mean in each half for two arms (random storage throughout, and the exchange); the difference
+    in differences, with its confidence interval, p value and number of seeds; and the column
+    `relative`, which is the difference in differences divided by the mean of the second half with
+    random storage throughout.
     """
     rows = {}
     for column in COLUMNS:
@@ -118,7 +119,7 @@ def as_table(found: pd.DataFrame) -> Table:
 
 
 def picture(study: Study, series: pd.DataFrame) -> Path:
-    """Draw orders and distance per hour over time."""
+    """Plot orders and distance per hour over time, for each arm."""
     path = study.place("figure-5a.png")
     colours = {STAYS: "0.55", CHANGES: COLOURS[1], NEAREST: COLOURS[0]}
     series = series.assign(distance_m=series["distance_m"] / 1000.0)

@@ -2,9 +2,9 @@
 
 The paper shows a heat map of robot movement, in colours on a logarithmic scale: robots queue at the
 stations, and some areas are close to congestion. Here a layout of the same size as RAWSim-O's
-layout MaTiMilli is used. Robots that pass a waypoint or stop there are counted as its visits, which
-are averaged over the seeds. A table shows how visits and waiting time are distributed over the
-areas of the layout: aisles, storage locations, queues, and the rest.
+layout MaTiMilli is used. The heat map shows the visits of each waypoint, that is, how often a robot
+passes the waypoint or stops there, averaged over the seeds. A table shows how visits and waiting
+time are distributed over the areas of the layout: aisles, storage locations, queues, and the rest.
 
 With `--reference DIR` (the folder of RAWSim-O's public instances), MaTiMilli itself is used.
 """
@@ -55,10 +55,10 @@ def areas(layout: Layout) -> NDArray[np.str_]:
 
 
 def spread(heat: pd.DataFrame, area: NDArray[np.str_]) -> pd.DataFrame:
-    """Return how visits and waiting are spread over the areas, with one row per seed and area.
+    """Return the distribution of visits and waiting over areas, with one row per seed and area.
 
-    A row has the area's number of waypoints, its visits per waypoint, and its shares of all visits
-    and of all waiting time, in percent.
+    Each row contains the number of waypoints in the area, the visits per waypoint, and the area's
+    shares of all visits and of all waiting time, in percent.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def as_table(found: pd.DataFrame) -> Table:
 
 
 def picture(study: Study, mean: pd.DataFrame, seeds: int) -> Path:
-    """Draw the heat map."""
+    """Draw the heat map of visits."""
     path = study.place("figure-5b.png")
     with saving(path, 9.0, 4.6) as figure:
         ax = figure.subplots()

@@ -1,12 +1,14 @@
 """The number of robots that the large site needs: default rules, TA planning and its start rule.
 
 TA planning is an optimiser that plans several visits ahead by a search; its start rule is the same
-controller without the search. At the large site (layout `large`), the study shows units per hour
-over the size of the fleet, with the stock level kept constant, and a bound that holds even for
-controllers that know all future orders (docs: bounds); the smallest fleet that reaches 95 % of the
-stations' capacity; and the gain of TA planning over its start rule, paired by seed. With `--later`,
-the third hour is measured, and each answer of the optimiser takes simulated time in proportion to
-its computation (pacing `work`). With `--bound`, only the bound is printed, and nothing is run.
+controller without the search. The study simulates the large site (layout `large`) with the stock
+level kept constant. It publishes units per hour by fleet size, with an upper bound that holds even
+for controllers that know all future orders (docs: bounds); the smallest fleet that reaches 95 % of
+the stations' capacity; and the gain of TA planning over its start rule, paired by seed.
+
+With `--later`, the third hour is measured, and each answer of the optimiser takes simulated time in
+proportion to the computation (pacing `work`). With `--bound`, the bound is printed and nothing is
+simulated.
 """
 
 from __future__ import annotations
@@ -43,9 +45,9 @@ RULES = "default rules"
 def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
     """Return an upper bound on units per hour for each fleet size, and the stations' capacity.
 
-    The capacity is that of all pick stations together, in units per hour. The bounds hold for all
-    runs that store at least as many units as they pick, and for fleets from one robot to the
-    largest of the design.
+    The fleet sizes are those from one robot to the largest fleet of the design. The bounds hold for
+    all runs in which at least as many units are stored as picked. The capacity is that of all pick
+    stations together, in units per hour.
     """
     arm = design.arms[0]
     own = {
@@ -64,12 +66,12 @@ def clairvoyant(design: Plan) -> tuple[dict[int, float], float]:
 def bounds(found: Mapping[int, float], limit: float) -> Table:
     """Return a table of the bound on units per hour by fleet size.
 
-    The rows begin with one robot and end with the smallest fleet that has the highest bound.
+    The first row is for one robot, the last row for the smallest fleet with the highest bound.
 
     Parameters
     ----------
     found, limit
-        Bounds and capacity, as `clairvoyant` returns them.
+        Bounds by fleet size, and capacity, as `clairvoyant` returns them.
     """
     highest = max(found.values())
     fleets = [robots for robots, bound in found.items() if bound < highest * (1 - 1e-6)]

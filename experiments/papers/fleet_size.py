@@ -2,8 +2,8 @@
 
 The design `fleet-size` simulates six fleet sizes, each with two storage rules. The study publishes
 units per hour of every fleet; the gain per additional robot from one fleet to the next larger one,
-paired by seed; and the Pareto front: the arms for which no other arm picks at least as many units
-per hour with at most as many robots.
+paired by seed; and the Pareto front, that is, the arms that no other arm dominates in units per
+hour and number of robots.
 """
 
 from __future__ import annotations
@@ -32,16 +32,16 @@ COLUMNS = (UNITS, "distance_per_unit_m", "robot_queueing_share", "pick_station_i
 
 
 def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
-    """Return the gain per additional robot from each fleet to the next larger, paired by seed.
+    """Return the gain per additional robot from each fleet to the next larger one, paired by seed.
 
     Parameters
     ----------
     frame
-        Results of a design with two factors, of which one is `layout.robots`.
+        Results of a design with two factors, one of which is `layout.robots`.
     rule
-        The other factor; fleets are compared at each of its levels. Default: the storage rule.
+        The other factor; fleets are compared separately at each of its levels.
     column
-        The measure in which the gain is taken. Default: units per hour.
+        The measure whose gain is computed.
 
     Returns
     -------
@@ -72,7 +72,10 @@ def added(frame: pd.DataFrame, rule: str = RULE, column: str = UNITS) -> Table:
 
 
 def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
-    """Return a table of the Pareto front (few robots, high `column`), smallest fleet first."""
+    """Return a table of the arms on the Pareto front, from the smallest to the largest fleet.
+
+    An arm is on the front if no other arm dominates it in number of robots and `column`.
+    """
     robots = per_arm(frame, "robots")["mean"]
     best = front(robots, per_arm(frame, column)["mean"], "less", "more")
     chosen = frame.set_index("arm").loc[best].reset_index()
@@ -82,7 +85,7 @@ def unbeaten(frame: pd.DataFrame, column: str = UNITS) -> Table:
 
 
 def picture(study: Study) -> Path:
-    """Draw units per hour over the number of robots for every arm, and the Pareto front."""
+    """Plot units per hour over the number of robots for every arm, and the Pareto front."""
     path = study.place("fleet-size.png")
     with saving(path, 6.4, 4.2) as figure:
         pareto(study.frame, "robots", UNITS, figure.subplots())

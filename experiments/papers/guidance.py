@@ -1,12 +1,15 @@
-"""The gain of guidance: extra costs of edges, optimised for a layout, by which paths are preferred.
+"""The gain of guidance, that is, of extra costs of edges that make planners prefer certain paths.
 
-The design `guidance` runs sites with quick stations at normal and at high density of robots,
-without guidance and with several files of guidance. The study publishes the changes of units per
-hour, of the delay per trip and of the distance per unit, paired by seed, with p values corrected by
-Holm's method. It also publishes the share of trip time that is delay, and the share of their
-time for which robots have no task: guidance can at most remove the delay, and shorter trips do not
-help where robots have nothing to do. In random trips without orders, with the same layouts, robots
-and guidance, every robot always has a trip: the study publishes the change of trips per hour.
+The design `guidance` simulates sites with quick stations at normal and at high density of robots,
+without guidance and with several guidance files. The study publishes the changes of units per hour,
+of the delay per trip and of the distance per unit, paired by seed, with p values corrected by
+Holm's method. For the runs without guidance, it also publishes the share of trip time that is
+delay (guidance cannot save more than this) and the share of time for which robots have no task
+(during which shorter trips would gain nothing).
+
+The same layouts, robots and guidance are also simulated with random trips instead of orders, so
+that every robot always has a trip. Of these simulations, the study publishes the change of trips
+per hour.
 """
 
 from __future__ import annotations
@@ -50,12 +53,12 @@ Rows = dict[str, dict[tuple[str, str], float]]
 def sites(
     frame: pd.DataFrame, columns: Sequence[str] = COLUMNS
 ) -> Iterator[tuple[str, dict[str, pd.DataFrame]]]:
-    """Yield each site with its measures: frames with a row per seed and a column per guidance.
+    """Yield each site with a table per measure: a row for each seed, a column for each guidance.
 
     Parameters
     ----------
     frame
-        Runs with `case` ("site: guidance"), `replication` and the columns.
+        Runs with the columns `case` ("site: guidance") and `replication`, and those in `columns`.
     """
     parts = frame[CASE].str.partition(": ")
     for site, runs in frame.assign(site=parts[0], guidance=parts[2]).groupby("site", sort=False):
@@ -92,7 +95,7 @@ def levels(frame: pd.DataFrame) -> Table:
 
 
 def gains(frame: pd.DataFrame) -> Table:
-    """Return the effects of guidance, paired by seed, with a row for each site and guidance."""
+    """Return the effects of guidance, paired by seed, with one row per site and guidance."""
     rows: Rows = {}
     p_units, p_delay = ("p of units", "Holm"), ("p of delay", "Holm")
     for site, of in sites(frame):
@@ -126,7 +129,7 @@ def gains(frame: pd.DataFrame) -> Table:
 
 
 def random_trips(study: Study) -> pd.DataFrame:
-    """Drive random trips with the layout, robots and guidance of every arm, for every seed.
+    """Simulate random trips with the layout, robots and guidance of every arm, for every seed.
 
     Returns
     -------
@@ -163,7 +166,7 @@ def trip_gains(frame: pd.DataFrame) -> Table:
     Parameters
     ----------
     frame
-        What `random_trips` returns.
+        Results of the simulations, as `random_trips` returns them.
     """
     rows: Rows = {}
     p_trips = ("p of trips", "Holm")

@@ -3,10 +3,12 @@
 Published exact models cannot be solved at this size. On the layout `large`, the default rules and
 HADGS (a heuristic of Jiao et al. 2025) are compared with the joint controllers of rmfs (`pile-on`
 with whole orders, `pile-on-split` with split orders), for a backlog and for orders that arrive over
-time. For comparison, a thesis with public instances (GitHub: Aesopz/RAWSIM-O-Aesop) reports results
-for a site of the same size, but with another layout and other orders: 6,341 units in 2 h with
-0.211 s per decision for HADGS, and 8,318 units (96 % of the stations' capacity) with 0.066 s per
-decision for its best heuristic. The study takes about 0.3 CPU hours.
+time. The study takes about 0.3 CPU hours.
+
+A thesis with public instances (GitHub: Aesopz/RAWSIM-O-Aesop) reports results for a site of the
+same size, but with another layout and other orders. With HADGS, 6,341 units are picked in 2 h, and
+a decision takes 0.211 s. With the best heuristic of the thesis, 8,318 units are picked (96 % of the
+stations' capacity), and a decision takes 0.066 s.
 """
 
 from __future__ import annotations

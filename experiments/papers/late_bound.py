@@ -1,10 +1,10 @@
-"""A lower bound on the number of late orders, whatever is decided and known.
+"""A lower bound on the number of late orders that holds for every controller.
 
 An order is on time only if all its units are handled between its arrival and its due time. Each
-station handles units one after the other. Consider an interval and the orders that arrive in it and
-are also due in it: those of them that are on time cannot need more work than all stations can do in
-the interval. The bound assumes that any pod is at any station as soon as it is wanted, that
-everything is in stock, and that orders can be split over stations.
+station handles units one after the other. The bound considers intervals of time: of the orders that
+both arrive and are due in an interval, those on time cannot need more work than all stations
+together can do in the interval. The bound assumes that every pod is at any station as soon as it is
+needed, that all SKUs are in stock, and that orders can be split over stations.
 """
 
 from __future__ import annotations
@@ -30,23 +30,23 @@ def fewest_late(
     """Return a lower bound on the number of late orders.
 
     A linear program maximises the number of orders on time; all other orders are late. It has one
-    constraint for each interval from an arrival to a due time: among the orders that both arrive
-    and are due in the interval, the work for those on time is at most the length of the interval
-    times the number of stations.
+    constraint for each interval from an arrival to a due time. Of the orders that both arrive and
+    are due in the interval, the work for those on time is at most the length of the interval times
+    the number of stations.
 
     Parameters
     ----------
     released_s, due_s
         Arrival and due time of each order, shape (N,), in s.
     work_s
-        Time for which each order occupies stations, shape (N,), in s.
+        Total time that each order needs at stations, shape (N,), in s.
     stations
         Number of stations.
 
     Raises
     ------
     RuntimeError
-        If the linear program is not solved.
+        If the linear program cannot be solved.
     """
     count = len(released_s)
     if not count:

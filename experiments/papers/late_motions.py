@@ -1,13 +1,14 @@
 """The cost of motions that begin late, and the benefit of repairing plans.
 
-In the design `late-motions`, robots at the default site (layout `default`) begin motions late: each
-motion with a probability of 0.0005, 0.005 or 0.02, and by 1 to 10 s or by 10 to 200 s. These values
-span the range of published benchmarks, with one second per time unit. In this study, lateness is
-the time by which a motion begins late, and perfect execution means that no motion does. With
-repair, robots that have to wait for a late one get new plans; each case is run with and without it.
+In the design `late-motions`, robots at the default site (layout `default`) begin some of their
+motions late. Each motion is late with a probability of 0.0005, 0.005 or 0.02. Late motions begin
+either 1 to 10 s or 10 to 200 s late. These values span the range of published benchmarks, if a time
+unit is one second. In this study, lateness is the time by which motions begin late; under perfect
+execution, no motion begins late. With repair, robots that have to wait for a late robot get new
+plans; each combination is run with and without repair.
+
 The study publishes the change of units per hour compared with perfect execution, and the effect of
-repair, both paired by seed, and a figure of the units per hour over the lateness per robot and
-hour.
+repair, both paired by seed. A figure shows units per hour over the lateness per robot and hour.
 """
 
 from __future__ import annotations
@@ -34,16 +35,16 @@ Rows = dict[str, dict[tuple[str, str], float]]
 
 
 def wide(frame: pd.DataFrame, robots: int, column: str = "units_per_h") -> pd.DataFrame:
-    """Return a measure of one fleet: a row for each seed, a column for each level of `late`."""
+    """Return a measure for one fleet: a row for each seed, a column for each level of `late`."""
     fleet = frame[frame[ROBOTS] == robots]
     return fleet.pivot_table(index="replication", columns=LATE, values=column, sort=False)
 
 
 def losses(frame: pd.DataFrame) -> Table:
-    """Return a table of units per hour, their change in percent, total lateness, and repairs.
+    """Return units per hour, their change in percent, total lateness, and repaired plans.
 
-    There is one row per fleet and level of `late`. The change is relative to perfect execution, and
-    negative if fewer units are picked.
+    The table has one row per fleet and level of `late`. The change is relative to perfect
+    execution; it is negative if fewer units are picked.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ def losses(frame: pd.DataFrame) -> Table:
 
 
 def gains(frame: pd.DataFrame) -> Table:
-    """Return the change of units per hour by repair, in percent of those without repair."""
+    """Return the change of units per hour that repair causes, in percent, paired by seed."""
     rows: Rows = {}
     for robots in frame[ROBOTS].unique():
         units = wide(frame, robots)
@@ -101,7 +102,7 @@ def gains(frame: pd.DataFrame) -> Table:
 
 
 def per_robot_and_hour(frame: pd.DataFrame) -> pd.Series:
-    """Return the total lateness of motions per robot and hour, in s."""
+    """Return the total lateness of motions per robot and hour, in s, for each run."""
     hours = frame["duration_s"].astype(float) / 3600
     return frame["lateness_s"].astype(float) / frame[ROBOTS].astype(float) / hours
 

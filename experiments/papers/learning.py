@@ -1,16 +1,19 @@
-"""Comparison of look-ahead, trained linear rules, trained networks and optimisers with plain rules.
+"""Comparison of plain rules with look-ahead, trained linear rules, networks and optimisers.
 
-A linear rule chooses the candidate with the greatest weighted sum of features; a network trained by
-PPO scores candidates in its place; look-ahead tries out decisions in copies of the run (docs:
-learning). A regime is a site with a kind of demand and a number of robots. The study has four
+A linear rule chooses the candidate with the greatest score, a weighted sum of features. In a
+network rule, a network trained by PPO (proximal policy optimisation) computes the scores.
+Look-ahead tries out decisions in copies of the run (docs: learning).
+
+A regime is a combination of a site, a kind of demand and a number of robots. The study has four
 regimes at the small site (layout `small`) or, with `--sites`, one at the default site and one at
-the large site (layouts `default` and `large`). With `--ppo`, the networks take the place of
-look-ahead. The seeds were not used in training. Every arm is compared with the default rules and
-with the best plain rule of its regime. In regimes with a backlog, the measure is the number of
-units picked; in those with orders that arrive over time, it is the number of orders completed late,
-plus those overdue at the end. p values are corrected by Holm's method over all arms of a regime. A
-bound that holds for all controllers, whatever they know, shows how much room there is for
-improvement.
+the large site (layouts `default` and `large`). With `--ppo`, the study contains the networks, but
+not look-ahead. The seeds were not used in training.
+
+Every arm is compared with the default rules and with the best plain rule of its regime. In regimes
+with a backlog, the measure is the number of units picked. In regimes with orders that arrive over
+time, it is the number of late orders: those completed late, plus those overdue at the end. p values
+are corrected by Holm's method over all arms of a regime. A bound that holds for all controllers,
+even if they know the future, shows how much improvement is possible.
 """
 
 from __future__ import annotations
@@ -42,25 +45,33 @@ NOT_RULES = ("linear", "PPO", "tried", "optimiser")
 
 
 def goal_of(regime: str) -> str:
-    """Return the column in which the arms of a regime are compared."""
+    """Return the name of the column by which the arms of a regime are compared."""
     return LATE if regime.startswith("arrivals") else UNITS
 
 
 def is_rule(policy: str) -> bool:
-    """Whether an arm is a plain rule: not trained, without look-ahead and without optimiser."""
+    """Return whether an arm has plain rules only: untrained, without look-ahead or optimiser."""
     return not any(word in policy for word in NOT_RULES)
 
 
 def is_linear(policy: str) -> bool:
-    """Whether an arm has linear rules."""
+    """Return whether an arm has linear rules."""
     return policy.startswith("linear")
 
 
 def best_rule(runs: pd.DataFrame, goal: str, among: Callable[[str], bool] = is_rule) -> str:
     """Return the plain rule with the best mean in a regime: most units, or fewest late orders.
 
-    It is selected from the same runs that are then compared, which favours it. With `among`, the
-    best of the arms for which this function returns true is returned.
+    The rule is selected by the same runs that are then used for comparisons, which favours it.
+
+    Parameters
+    ----------
+    runs
+        Runs of the regime.
+    goal
+        Column by which the arms are compared.
+    among
+        Function that returns whether an arm can be selected. Default: only plain rules.
     """
     rules = runs[runs[POLICY].map(among)]
     means = rules.groupby(POLICY, sort=False)[goal].mean()
@@ -68,29 +79,29 @@ def best_rule(runs: pd.DataFrame, goal: str, among: Callable[[str], bool] = is_r
 
 
 def with_goals(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the results with the column `LATE`: orders completed late, plus overdue at the end."""
+    """Add the column `LATE`: number of orders completed late, plus those overdue at the end."""
     return frame.assign(**{LATE: frame["orders_late"] + frame["orders_overdue_end"]})
 
 
 def most_units(runs: pd.DataFrame) -> float:
-    """Return a number of units that no controller can exceed in any of these runs."""
+    """Return an upper bound on the units that any controller can pick in any of these runs."""
     return float((runs["units_per_h_bound"] * runs["duration_s"]).max() / 3600.0)
 
 
 def fewest_late_mean(orders: pd.DataFrame, stations: int, unit_s: float) -> float:
-    """Return a lower bound on the mean number of late orders per run, as in the column `LATE`.
+    """Return a lower bound on the mean of the column `LATE`, late orders per run.
 
     Parameters
     ----------
     orders
-        Table `orders` of the runs of one arm, with the columns `replication`, `start_s` and `end_s`
-        (start and end of the run's measured time). Orders due in the measured time are considered;
-        orders that the arm completed before it are not in the table, which weakens the bound but
-        keeps it valid.
+        Table `orders` of the runs of one arm, with the additional columns `replication`, `start_s`
+        and `end_s` (start and end of the run's measured time). The bound considers the orders due
+        in the measured time. Orders that the arm completed before this time are not in the table;
+        without them, the bound is weaker but still valid.
     stations
         Number of pick stations.
     unit_s
-        Least time between two units at a station, in s.
+        Minimum time from one unit to the next at a station, in s.
     """
     found = []
     for _, run in orders.groupby("replication"):
@@ -105,8 +116,9 @@ def fewest_late_mean(orders: pd.DataFrame, stations: int, unit_s: float) -> floa
 def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
     """Return means, and gains over the default rules and the best plain rule, by regime and arm.
 
-    If there are networks trained by PPO, gains over the best linear rule are added. A gain is
-    positive if more units are picked or, where late orders are the measure, fewer orders are late.
+    If the results contain networks trained by PPO, gains over the best linear rule are added. A
+    gain is positive if an arm is better: if more units are picked or fewer orders are late,
+    depending on the measure of the regime.
 
     Parameters
     ----------
@@ -169,7 +181,7 @@ def compared(frame: pd.DataFrame, at_best: Mapping[str, float]) -> Table:
 
 
 def bounds(study: Study, frame: pd.DataFrame) -> dict[str, float]:
-    """Return the bound of each regime: most units, or fewest late orders, with any controller."""
+    """Return the bound of each regime: on units picked (upper) or on late orders (lower)."""
     found = {}
     for name, runs in frame.groupby(REGIME, sort=False):
         regime = str(name)

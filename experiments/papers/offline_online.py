@@ -1,13 +1,16 @@
-"""Whether better answers of optimisers also help the warehouse, by family of questions.
+"""Whether better answers of optimisers also improve the results of the warehouse.
 
 A question is one decision that a controller asks an optimiser to take; questions of the same kind
-form a family, and the library contains questions recorded in runs (docs: decisions). Every arm
-answers the questions of one family by one method with one limit of work. The offline gap of an arm
-is the mean relative difference (primal gap) between the values of its answers and the best known
-ones, over the library's questions of its family, each answered as the arm's controller would answer
-it. Online, the warehouse is simulated with this controller, with the same seeds in all arms. If
-lower gaps come with more units, fewer late orders and less driving, the objective of the questions
-is a good proxy for these measures.
+form a family, and the library contains questions recorded in runs (docs: decisions). In each arm, a
+controller asks the questions of one family, which are answered by one method with one limit of
+work.
+
+Offline, the library's questions of the family are answered with the settings of the arm. The
+offline gap of the arm is the mean primal gap, that is, the mean relative difference between the
+values of these answers and the best known values. Online, the warehouse is simulated with the
+controller of the arm, with the same seeds in all arms. If arms with smaller gaps pick more units,
+have fewer late orders and drive less, the objective of the questions is a good proxy for these
+measures.
 """
 
 from __future__ import annotations
@@ -87,14 +90,14 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
-    """Answer questions of the library as an arm would, and return the primal gaps (0 to 1).
+    """Return the primal gaps (0 to 1) of library questions answered with the settings of an arm.
 
     The questions are those of the arm's family that have the given size.
 
     Parameters
     ----------
     library
-        The library.
+        The library of questions.
     arm
         A key of `ASKED`.
     size
@@ -112,7 +115,7 @@ def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
 
 
 def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
-    """Return a question with changed settings; nested tables are changed key by key.
+    """Return a question with changed settings; of nested tables, only given keys are changed.
 
     Parameters
     ----------
@@ -128,14 +131,14 @@ def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
 
 
 def beside(frame: pd.DataFrame, gaps: Mapping[str, list[float]]) -> Table:
-    """Return a table with the mean offline gap and the means of online measures of every arm.
+    """Return a table of the mean offline gap and the mean online measures of every arm.
 
     Parameters
     ----------
     frame
         Results of the runs.
     gaps
-        Offline gaps of the single questions, by arm.
+        Offline gap of each question, by arm.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for arm, offline in gaps.items():
@@ -155,7 +158,10 @@ def beside(frame: pd.DataFrame, gaps: Mapping[str, list[float]]) -> Table:
 
 
 def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
-    """Return rank correlations of offline gaps with online measures, by family, paired by seed.
+    """Return rank correlations of offline gaps with online measures, by family.
+
+    To pair the runs by seed, the mean over the family's arms with the same seed is first subtracted
+    from each value of a measure.
 
     Parameters
     ----------
@@ -167,9 +173,8 @@ def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
     Returns
     -------
     One row per family: the number of arms, the largest of their gaps, and the rank correlation of
-    each measure with the gap. Before the correlation is computed, each value of a measure is
-    reduced by the mean over the family's arms with the same seed. With two arms, the correlation
-    shows only the sign of the effect, and whether it is the same for all seeds.
+    each measure with the gap. With two arms, the correlation shows only the sign of the effect, and
+    whether the sign is the same for all seeds.
     """
     rows: dict[str, dict[tuple[str, str], float]] = {}
     of = frame[SOLVER].map(lambda arm: ASKED[arm][0])

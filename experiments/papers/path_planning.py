@@ -2,10 +2,9 @@
 
 There are three layouts, each of the size of an instance in that paper: 32 robots on one tier, 128
 robots on one tier, and 96 robots on three tiers with elevators. The backlog is constant, all other
-decisions are random, and one hour is simulated. With a better method, the same robots complete more
-orders. As in the paper, pods, and therefore robots, stay on their tier if possible. So that robots
-have to use the elevators, the layout with three tiers is simulated once more with pods stored on
-any tier.
+decisions are random, and one hour is simulated. Methods are compared by orders per hour. As in the
+paper, pods, and therefore robots, stay on their tier if possible. The layout with three tiers is
+simulated a second time with pods stored on any tier, so that robots have to use the elevators.
 
 With `--reference DIR` (the folder of RAWSim-O's public instances), the original layouts of the
 paper are used instead, and the results of RAWSim-O are shown for comparison.
@@ -43,19 +42,19 @@ class Instance:
     Attributes
     ----------
     twin
-        A shipped layout of the same size.
+        Name of a shipped layout of the same size as the original layout.
     reference
-        The original layout: its path in the folder of RAWSim-O's public instances.
+        Path of the original layout in the folder of RAWSim-O's public instances.
     theirs
         Results of RAWSim-O with seed 0, for the methods that were run with RAWSim-O: orders per
-        hour, km per hour, and the simulated time in s over which these were measured.
+        hour, km per hour, and the simulated time in s over which both were measured.
     seeds
-        Number of seeds for methods that are not slow.
+        Number of seeds for each method that is not in `slow`.
     slow
-        Methods that need minutes of computation for a simulated hour, and their numbers of seeds; 0
-        leaves a method out.
+        Methods that need minutes of computation for a simulated hour, with the number of seeds of
+        each; a method with 0 seeds is left out.
     riding
-        Whether pods are stored on any tier, so that robots ride elevators. Otherwise they stay on
+        Whether pods are stored on any tier, so that robots use elevators. Otherwise pods stay on
         their tier if possible, as is the default in RAWSim-O and rmfs.
     """
 
@@ -68,11 +67,11 @@ class Instance:
 
     @property
     def part(self) -> str:
-        """Name of the folder of this layout's runs."""
+        """Name of the folder for the runs with this layout."""
         return self.twin + ("-riding" if self.riding else "")
 
     def name(self, *, reference: bool) -> str:
-        """Name in the table: that of the original layout, or of its twin."""
+        """Return the name for the table: that of the original layout or that of its twin."""
         stem = self.reference.removeprefix("pp/").removesuffix(".xinst")
         return (stem if reference else self.twin) + (", riding" if self.riding else "")
 
@@ -130,10 +129,10 @@ def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tupl
     Parameters
     ----------
     runs
-        Runs of the method on the layout, one row each.
+        Runs of the method on the layout, one row per run.
     difference
-        Row of the method in the result of `rmfs.experiments.statistics.against`; None for the
-        baseline method.
+        Difference from the baseline method in orders per hour: a row of the result of
+        `rmfs.experiments.statistics.against`. None for the baseline method itself.
     """
     cells = {("seeds", ""): float(len(runs))}
     hours = runs["duration_s"] / 3600.0
@@ -156,7 +155,7 @@ def row(runs: pd.DataFrame, difference: Mapping[Any, float] | None) -> dict[tupl
 
 
 def rows(study: Study, instance: Instance, name: str) -> Rows:
-    """Return the rows of one layout, one per method, sorted by orders per hour.
+    """Return the table rows of one layout, one per method, most orders per hour first.
 
     For original layouts, the rows also contain the results of RAWSim-O.
     """

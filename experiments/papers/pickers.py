@@ -1,11 +1,14 @@
 """The balance of work among pickers, and its cost.
 
 At the small site (layout `small`), orders arrive over time, and two pickers differ in speed and get
-tired. The POA rule workload, which balances open orders over the stations, and the SA rule staffed,
-which lets tired pickers rest, are compared with the POA rule pod match, the default. The POA rule
-picker load, which considers the speed and fatigue of pickers, is compared with workload. Optimisers
-with balance in their objective are compared with the same optimisers without it. The study
-publishes means, and differences paired by seed.
+tired. The study publishes means of all arms, and the differences, paired by seed, of
+
+- POA `workload`, which balances open orders over the stations, from the default rule `pod-match`;
+- SA `staffed`, which lets tired pickers rest, from stations that are always active, both with POA
+  `pod-match`;
+- POA `picker-load`, which considers the speed and, in a second arm, also the fatigue of pickers,
+  from POA `workload`;
+- optimisers with balance in their objective from the same optimisers without it.
 """
 
 from __future__ import annotations
@@ -38,7 +41,7 @@ COMPARED = (
 def differences(frame: pd.DataFrame) -> Table:
     """Return the differences between the arms of each pair in `COMPARED`, paired by seed.
 
-    A difference is the arm minus its baseline, in the unit of the column.
+    Each difference is the value of the arm minus that of its baseline, in the unit of the column.
 
     Parameters
     ----------

@@ -1,12 +1,13 @@
 """The benefit of planning ahead: TA planning compared with its own start rule.
 
 TA planning, an optimiser that plans several visits ahead, is run at the small site (layout `small`)
-with three to five robots or, with `--large`, at the large site (layout `large`) with 20 and 30.
-Orders are not split; they come from a backlog or arrive over time. The start rule is the same
-controller with `method = "greedy"`: its other parameters are the same, and it continues the
-previous plan, but does not search. With `--anticipation`, TA planning that also considers future
-orders is compared with TA planning that does not. Bundles and used space are shown as well, because
-storing fewer bundles frees robots for a while.
+with three to five robots or, with `--large`, at the large site (layout `large`) with 20 and with 30
+robots. Orders are not split; they come from a backlog or arrive over time. The start rule is the
+same controller with `method = "greedy"` and otherwise the same parameters: it also continues the
+previous plan, but does not search. With `--anticipation`, TA planning that considers future orders
+is compared with TA planning that does not, instead of with the start rule. The tables also show
+stored bundles and used space, because a controller that stores fewer bundles has more robots for
+picking, but only for a while.
 """
 
 from __future__ import annotations

@@ -1,11 +1,12 @@
 """The cost of planning time: units per hour over the time that a path plan takes.
 
 The design `price-of-planning` varies the time that it takes to plan the path of a robot's trip, for
-five fleets: three on one layout and two on another, with one planner for all robots, and with a
-planner for each (labels that end in ", each"). It also charges the work of our own search, plans
-only when a robot could depart (lazy), and begins plans only every five seconds. The study publishes
-the change of units per hour compared with plans that take no time, paired by seed, and, for each
-fleet, the shortest time per plan that costs throughput.
+five fleets: three on one layout and two on another. There is one planner for all robots or, in arms
+whose labels end in ", each", one for each robot. In further arms, the time of a plan is computed
+from the work of the search, plans are made only when a robot could depart (label "lazy"), or
+planning begins only every five seconds. The study publishes the change of units per hour compared
+with plans that take no time, paired by seed. For each fleet, it also publishes the shortest time
+per plan that costs throughput.
 """
 
 from __future__ import annotations
@@ -33,13 +34,13 @@ Rows = dict[str, dict[tuple[str, str], float]]
 
 
 def wide(frame: pd.DataFrame, fleet: str, column: str = "units_per_h") -> pd.DataFrame:
-    """Return a measure of one fleet: a row for each seed, a column for each level of `planning`."""
+    """Return a measure of one fleet, with a row per seed and a column per level of `planning`."""
     own = frame[frame[FLEET] == fleet]
     return own.pivot_table(index="replication", columns=PLANNING, values=column, sort=False)
 
 
 def changes(frame: pd.DataFrame, fleet: str) -> dict[str, Interval]:
-    """Return the change of a fleet's units per hour with each level of `planning`, in percent.
+    """Return the change of a fleet's units per hour for each level of `planning`, in percent.
 
     The change is relative to plans that take no time.
     """
@@ -74,7 +75,7 @@ def losses(frame: pd.DataFrame) -> Table:
 
 
 def seconds(planning: str) -> float:
-    """Return the constant time per plan that the label of a level states, in s; nan if none."""
+    """Return the constant time per plan given in the label of a level, in s; nan if none is."""
     number, _, rest = planning.removesuffix(", each").partition(" ")
     return float(number) if rest == "s" else nan
 
@@ -82,15 +83,15 @@ def seconds(planning: str) -> float:
 def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float]:
     """Return the shortest time per plan that costs throughput, and the next shorter time, in s.
 
-    Only times of the design are considered. One of them costs throughput if the confidence interval
-    of the change of units per hour lies below zero for this time and for all longer ones. If no
-    time costs throughput, the first value is nan, and the second is the longest time; if all times
-    do, the second value is nan.
+    Only times in the design are considered. A time costs throughput if, for this time and for all
+    longer ones, the confidence interval of the change of units per hour is below zero. If no time
+    costs throughput, the first value is nan, and the second is the longest time. If all times cost
+    throughput, the second value is nan.
 
     Parameters
     ----------
     each
-        Whether each robot has a planner of its own.
+        Whether to consider the levels at which each robot has a separate planner.
     """
     found = changes(frame, fleet)
     levels = sorted(
@@ -142,7 +143,7 @@ def thresholds(frame: pd.DataFrame) -> Table:
 
 
 def picture(study: Study) -> None:
-    """Plot units per hour, in percent of those with instant planning, over seconds per plan."""
+    """Plot units per hour, in percent of those without planning time, over the time per plan."""
     path = study.place("price-of-planning.png")
     with saving(path, 6.0, 4.0) as figure:
         ax = figure.subplots()

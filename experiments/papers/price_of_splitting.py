@@ -1,16 +1,21 @@
 """The cost of splitting orders: the put wall it needs, and the packing work it may cause.
 
 Split orders are compared with whole ones, for put walls of different sizes, one minute and ten
-minutes away from the pick stations. The controllers split no more orders than the wall can hold or,
-in the arms whose names contain `always`, any number. The study publishes means; differences from
-whole orders, paired by seed; the gain of splitting within the capacity of the wall over the better
-of two alternatives (whole orders, and splitting regardless of the wall); and the gain of optimisers
-over their start rules. It also publishes three points at which splitting breaks even with whole
-orders: the number of slots of the wall at which units per hour are equal; the packer's time per
-additional tote at which the work of pickers and packers per unit is equal; and the transport time
-to the wall at which the mean time from an order's arrival to its packing is equal. The study uses
-the small site (layout `small`) or, with `--default` or `--large`, the default or the large site
-(layouts `default` and `large`); at the large site, all walls are one minute away.
+minutes away from the pick stations. The controllers split only as many orders as the wall can hold
+or, in the arms whose names contain `always`, any number of orders. The study publishes
+
+- the means of all arms, and differences from whole orders, paired by seed;
+- the gain of splitting within the capacity of the wall over the better of two alternatives: whole
+  orders, and splitting regardless of this capacity;
+- the gain of optimisers over their start rules;
+- the number of slots of the wall at which splitting picks as many units per hour as whole orders;
+- the packer's time per additional tote at which pickers and packers together need as much time per
+  unit with splitting as with whole orders;
+- the transport time to the wall at which the mean time from the arrival of an order to its packing
+  is the same with splitting as with whole orders.
+
+The study uses the small site (layout `small`) or, with `--default` or `--large`, the default or the
+large site (layouts `default` and `large`). At the large site, all walls are one minute away.
 """
 
 from __future__ import annotations
@@ -57,7 +62,7 @@ RESAMPLES = 2000
 
 
 def wall_of(label: str) -> tuple[float, float]:
-    """Return a wall's number of slots (inf: unlimited) and the time to it in s, read from a label.
+    """Return the number of slots (inf: unlimited) and the time to the wall, in s, from a label.
 
     Raises
     ------
@@ -71,7 +76,7 @@ def wall_of(label: str) -> tuple[float, float]:
 
 
 def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
-    """Return the walls (`wall_of`) by level of `orders`.
+    """Return the wall of each level of `orders`, as `wall_of` returns it.
 
     Three kinds of levels are left out: whole orders, splitting regardless of the wall's capacity,
     and start rules.
@@ -85,21 +90,21 @@ def walls_of(runs: pd.DataFrame) -> dict[str, tuple[float, float]]:
 
 
 def break_even(slots: Sequence[float], gain: Floats) -> float:
-    """Return the number of slots above which there is a gain, by linear interpolation.
+    """Return the number of slots above which splitting has a gain, by linear interpolation.
 
     Parameters
     ----------
     slots
-        Number of slots of each wall, ascending. The last may be infinite; if only that wall has a
-        gain, the number before it is returned.
+        Number of slots of each wall, ascending. The last number may be infinite.
     gain
-        Gain with each wall. A running maximum is used, so that noise cannot make the gain decrease
-        as the number of slots increases.
+        Gain of splitting with each wall. It is replaced by its running maximum, so that noise
+        cannot make the gain decrease as the number of slots increases.
 
     Returns
     -------
-    The number of slots. It is that of the smallest wall if even this wall has a gain, and infinity
-    if no wall has.
+    The number of slots. If there is a gain even with the smallest wall, this is the number of slots
+    of that wall. If there is no gain with any wall, it is infinity. If there is a gain only with
+    unlimited slots, it is the number of slots of the largest limited wall.
     """
     reached: Floats = np.maximum.accumulate(gain)
     if reached[0] > 0:
@@ -115,22 +120,22 @@ def break_even(slots: Sequence[float], gain: Floats) -> float:
 
 
 def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, float]:
-    """Return the break-even number of slots, and its 95 % interval.
+    """Return the break-even number of slots, and the ends of its 95 % interval.
 
-    With more slots, more units per hour are picked by splitting than with whole orders.
+    With more slots than this number, splitting picks more units per hour than whole orders.
 
     Parameters
     ----------
     runs
         Runs with one kind of demand.
     way_s
-        Time to the walls that are considered, in s. The wall with unlimited slots is always
-        included: as it is never full, the time to it does not matter for units per hour.
+        Time to the wall, in s; only walls with this time are considered, and the wall with
+        unlimited slots. As that wall is never full, the time to it does not affect units per hour.
 
     Returns
     -------
-    The break-even point of the means over seeds, and its 2.5 and 97.5 percentiles over `RESAMPLES`
-    bootstrap samples of the seeds.
+    The break-even number for the mean gains over all seeds, and the 2.5th and 97.5th percentiles of
+    the break-even numbers for `RESAMPLES` bootstrap samples of the seeds.
     """
     wide = runs.pivot_table(index="replication", columns=ORDERS, values="units_per_h")
     chosen = sorted(
@@ -145,12 +150,12 @@ def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, fl
 
 
 def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[float]:
-    """Return the packer's time per additional tote at which splitting saves no work, in s.
+    """Return the packer's time per additional tote, in s, at which splitting saves no work.
 
     An additional tote is one beyond the first of an order. One picker works at each pick station.
     With units per hour `split` and `whole`, splitting saves the share `1 - whole / split` of the
-    pickers' time. The result is the time saved divided by the number of additional totes, with one
-    value per seed, which is nan if nothing was split.
+    pickers' time. The result is the time saved divided by the number of additional totes. It has
+    one value per seed, which is nan if no order was split.
 
     Parameters
     ----------
@@ -164,11 +169,12 @@ def tolerable_tote_s(split: pd.DataFrame, whole: pd.DataFrame) -> pd.Series[floa
 
 
 def tolerable_way_s(split: pd.DataFrame, whole: pd.DataFrame, way_s: float) -> pd.Series[float]:
-    """Return the time to the wall at which orders are packed as early with splitting as without.
+    """Return the time to the wall, in s, up to which splitting does not delay packing on average.
 
-    The result, in s, has one value per seed: nan if no order was split, and negative if orders
-    would be packed later even with a wall next to the stations. The time from arrival to packing is
-    averaged over all orders; only split orders go to the wall.
+    At this time to the wall, the mean time from the arrival of an order to its packing is the same
+    as with whole orders. Only split orders go to the wall, but the mean is over all orders. The
+    result has one value per seed. It is nan if no order was split, and negative if splitting would
+    delay packing even with a wall next to the stations.
 
     Parameters
     ----------
@@ -228,10 +234,10 @@ _PARTS = ("mean", HALF, "2.5 %", "97.5 %")
 
 
 def against_better(frame: pd.DataFrame) -> Table:
-    """Return the gain of splitting within the wall's capacity over the alternatives, in percent.
+    """Return the gain in units per hour of splitting within the wall's capacity, in percent.
 
-    The gain is in units per hour. The alternatives are whole orders, splitting regardless of the
-    wall, and the better of these two.
+    Gains are computed over whole orders, over splitting regardless of this capacity, and over the
+    better of these two.
 
     Parameters
     ----------

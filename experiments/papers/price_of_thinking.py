@@ -1,13 +1,18 @@
-"""The cost of computing time: units per hour over the time limit of the optimiser.
+"""The cost of computing time: units per hour as a function of the optimiser's time limit.
 
 The study uses the small site (layout `small`) with six robots and split orders. With the pacing
 `fixed`, an answer of the optimiser takes effect after the whole time limit, as if the solver had
 used all of it. With `work`, it takes effect after the time that corresponds to the solver's work,
 which is less if the optimum is proven early. Results with either pacing are reproducible. The study
-takes about 0.1 CPU hours. `--wall` uses wall time, with four limits (0.02 CPU hours); its results
-are not reproducible, and the machine must be otherwise idle. `--planning` uses TA planning, which
-plans several visits ahead, with four robots: its problems are large enough for a search to matter.
-Instead of the time limit, the time per answer or the number of search steps is then varied.
+takes about 0.1 CPU hours.
+
+Two options change the study:
+
+- `--wall` uses wall time, with four time limits (0.02 CPU hours). The results are not
+  reproducible, and the machine must be otherwise idle.
+- `--planning` uses TA planning, which plans several visits ahead, with four robots. Its problems
+  are so large that the length of the search matters. The study then varies the time per answer or
+  the number of search steps, instead of the time limit.
 """
 
 from __future__ import annotations
@@ -32,12 +37,12 @@ COLUMNS = ("units_per_h", "units_per_visit", "distance_per_unit_m", "paced_mean_
 
 
 def paced(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the runs with the column `paced_mean_s`: mean simulated time of an answer, in s."""
+    """Return the runs with a new column `paced_mean_s`: mean simulated time of an answer, in s."""
     return frame.assign(paced_mean_s=frame["paced_s"] / frame["optimiser_calls"])
 
 
 def picture(study: Study, frame: pd.DataFrame) -> Path:
-    """Draw units per hour over the time limit, with one line per mode of pacing."""
+    """Plot units per hour against the time limit, with one line per pacing."""
     path = study.place("price-of-thinking.png")
     with saving(path, 6.0, 4.0) as figure:
         ax = figure.subplots()

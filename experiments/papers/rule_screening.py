@@ -1,11 +1,10 @@
 """Rule screening: which decisions matter (Merschformann, Lamballais, de Koster, Suhl 2019).
 
-That study combined rules for five decision problems in 1620 ways and found that pick order
-assignment (POA) has a strong impact on the units picked per hour, while the other four problems do
-not. Here 72 of these combinations, chosen to estimate the main effects as precisely as possible,
-are run with common seeds; an analysis of variance shows what share of the variation each problem
-explains. The design `rule-factorial` contains all combinations (`--design rule-factorial`, for a
-cluster).
+The cited study combined rules for five decision problems in 1620 ways. It found that pick order
+assignment (POA) has a strong impact on the units picked per hour, but none of the other four
+problems has. Here, 72 of these combinations are run with common seeds. They are chosen to estimate
+the main effects as precisely as possible. An analysis of variance shows what share of the variation
+each problem explains. To run all combinations on a cluster, use `--design rule-factorial`.
 """
 
 from __future__ import annotations
@@ -27,7 +26,7 @@ BEST = 10
 
 
 def strongest(found: pd.DataFrame) -> str:
-    """Return the factor that explains most of the variation, or "none" if it is not significant."""
+    """Return the factor that explains most of the variation; "none" if its effect has p >= 0.05."""
     others = [name for name in (SEEDS, POOLED, RESIDUAL) if name in found.index]
     factors = found.drop(index=others)
     first = factors.index[0]

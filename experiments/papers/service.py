@@ -2,12 +2,17 @@
 
 The study uses the small site (layout `small`) with tight, medium and slack due times. The optimiser
 is TA planning with tardiness in its objective (`late_s`). It is simulated in two ways: its answers
-take no time, or they take simulated time in proportion to their computation (pacing `work`). The
-study publishes means, and gains of the optimiser in on-time share, in percentage points and paired
-by seed, over three baselines: the best of the rules, which is selected from the same runs and thus
-favoured; the optimiser's start rule; and TA planning that ignores due times. `--priorities` uses
-three classes of orders with different weights, and shows gains for the first class (urgent) and for
-the two other classes together (ordinary).
+take no time, or they take simulated time in proportion to their computation (pacing `work`).
+
+The study publishes means, and the optimiser's gains in on-time share over several baselines, in
+percentage points and paired by seed. The baselines are:
+
+- the best of the rules, which is favoured because it is selected from the same runs,
+- the optimiser's start rule, and
+- TA planning that ignores due times (only if answers take no time).
+
+`--priorities` uses three classes of orders with different weights, and shows gains for the first
+class (urgent) and for the two other classes together (ordinary).
 """
 
 from __future__ import annotations
@@ -41,7 +46,7 @@ def best_rule(runs: pd.DataFrame) -> str:
 
 
 def differences(frame: pd.DataFrame) -> Table:
-    """Return the optimiser's gains in on-time share over baselines, in percentage points.
+    """Return the optimiser's gains in on-time share over the baselines, in percentage points.
 
     Each row states the due times (tight, medium or slack), the arm of the optimiser (`optimiser`,
     or `optimiser, work` with pacing `work`), and the baseline.
@@ -82,8 +87,8 @@ BY_CLASS = ("on_time_urgent_share", "on_time_ordinary_share")
 def differences_by_class(frame: pd.DataFrame) -> Table:
     """Return the optimiser's gains in on-time share, for urgent and for ordinary orders.
 
-    Gains are in percentage points, over three baselines: the best rule for urgent orders, the start
-    rule, and the optimiser with equal weights of all classes.
+    Gains are in percentage points, over three baselines: the rule that is best for urgent orders,
+    the start rule, and the optimiser with equal weights for all classes.
 
     Parameters
     ----------

@@ -4,9 +4,11 @@ Most arms replace only one of the two rules by a model. The literature finds tha
 and tasks matter little for throughput (Merschformann, Lamballais, de Koster, Suhl 2019), but they
 affect how far robots drive. Therefore the fleet is so small that driving is the bottleneck, and
 metres per unit are shown with units, lines and orders per hour. Bundles per hour are shown as well,
-because storing fewer bundles frees robots for a while. There are separate tables for a backlog and
-for orders that arrive over time: means, differences from the two rules, and the gain of four of the
-models over their own start rules, both paired by seed.
+because storing fewer bundles frees robots for a while.
+
+For each kind of demand (a backlog, and orders that arrive over time), there are three tables:
+means; differences from the two rules, paired by seed; and the gains of four of the models over
+their own start rules, also paired by seed.
 """
 
 from __future__ import annotations

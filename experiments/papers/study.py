@@ -48,8 +48,8 @@ class Study:
     published
         Folder for tables and pictures.
     suffix
-        Suffix of the names of tables and pictures: "-reference" if RAWSim-O's own layout was
-        used instead of our generated layout of the same size, and "-smoke" if runs are short.
+        Suffix of the names of tables and pictures: "-reference" if a layout of RAWSim-O was used
+        instead of the generated layout of the same size, followed by "-smoke" if runs are short.
     """
 
     plan: Plan
@@ -64,7 +64,7 @@ class Study:
         return self.suffix.endswith(_SMOKE)
 
     def table(self, name: str) -> pd.DataFrame:
-        """Return a table that was kept from every run, with the rows of all runs."""
+        """Return a table that the design keeps besides the footprint, with the rows of all runs."""
         return load(self.folder, table=name)
 
     def publish(self, table: Table, name: str, columns: Sequence[str], **more: Any) -> None:
@@ -105,7 +105,7 @@ def parser(
     Parameters
     ----------
     design
-        The shipped design.
+        Name of the shipped design that the study uses by default.
     reference
         Layout of RAWSim-O on which the study can be run instead of the shipped layout of the same
         size: a path in the folder of RAWSim-O's public instances.
@@ -151,20 +151,21 @@ def done(
     replications: int | None = None,
     without: Collection[str] = (),
 ) -> Study:
-    """Make the unfinished runs of a study's design, and return the results.
+    """Execute the unfinished runs of a study's design, and return the results.
 
     Parameters
     ----------
     given
         Options of `parser`.
     layout
-        Layout to use instead of the design's, unless a reference layout is used.
+        Layout to use instead of the design's; ignored if the option `--reference` is given.
     more
         Additional entries of the design's table `base`.
     part
         Name of the subfolder for these runs, if the study runs its design several times.
     replications
-        Number of seeds instead of the design's; the option of this name can only reduce it.
+        Number of seeds to use instead of the design's. If the option `--replications` is given as
+        well, the smaller of the two numbers is used.
     without
         Names of arms to leave out.
 
@@ -198,13 +199,13 @@ def done(
 
 
 def station_units_per_h(study: Study) -> float:
-    """Return the units per hour that the fastest pick station of the study's first arm can pick."""
+    """Return how many units per hour the fastest pick station in the first arm can pick."""
     stations = study.layout(study.plan.arms[0]).pick_stations
     return 3600.0 / min(station.unit_transfer_s for station in stations)
 
 
 def _reference(given: argparse.Namespace) -> tuple[dict[str, str] | None, str]:
-    """Return the inputs that take the place of the design's, and the suffix of all names."""
+    """Return the inputs that replace those of the design, and the suffix of all file names."""
     folder: Path | None = getattr(given, "reference", None)
     if folder is None:
         return None, ""

@@ -19,7 +19,7 @@ def run(
     dask: str | None = None,
     watcher: Watcher | None = None,
 ) -> Tally:
-    """Make those runs of a plan that are not finished yet.
+    """Execute the runs of a plan that are not finished yet.
 
     Parameters
     ----------
@@ -28,8 +28,8 @@ def run(
     processes
         Number of parallel runs on this machine. Default: one per available core.
     dask
-        Cluster on which to make the runs: the address of a Dask scheduler, or a cluster profile (a
-        .toml file, see `running.cluster`). Default: none; the runs are made on this machine.
+        Cluster on which to execute the runs: the address of a Dask scheduler, or a cluster profile
+        (a .toml file, see `running.cluster`). Default: none; runs are executed on this machine.
     watcher
         Object that is notified of progress. Default: none.
 

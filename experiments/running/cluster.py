@@ -1,8 +1,8 @@
-"""Makes runs on a Dask cluster: an existing one, or one that is started from a cluster profile.
+"""Executes runs on a Dask cluster, which exists already or is started from a cluster profile.
 
 Workers need the same version of rmfs as this machine, and your input files under the same paths (on
 a shared file system); every worker checks the hashes of the inputs. Start workers with one thread
-each (`dask worker ADDRESS --nworkers N --nthreads 1`), so that each makes one run at a time.
+each (`dask worker ADDRESS --nworkers N --nthreads 1`), so that each executes one run at a time.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class DaskWorkers:
 
     @property
     def slots(self) -> int:
-        """Maximum number of unfinished jobs: two per worker thread, so that none is idle."""
+        """Maximum number of unfinished jobs: two per worker thread, so that no thread is idle."""
         with self._scheduler_there():
             workers = self.client.scheduler_info(n_workers=-1)["workers"].values()
         threads = [int(worker["nthreads"]) for worker in workers]
@@ -142,7 +142,7 @@ class DaskWorkers:
 
     @contextmanager
     def _scheduler_there(self) -> Iterator[None]:
-        """Say in a line that the scheduler is gone, whatever Dask says then."""
+        """Report a lost scheduler by an error of one line, whatever error Dask raises."""
         try:
             yield
         except (OSError, RuntimeError, CancelledError) as error:
@@ -159,7 +159,7 @@ def read_profile(path: Path) -> Profile:
     Raises
     ------
     InputError
-        If it is missing or invalid.
+        If the profile is missing or invalid.
     """
     return validate(Profile, read_toml(path), str(path))
 
@@ -183,7 +183,7 @@ def job_script(path: Path) -> str:
 
 
 def started(profile: Profile, source: str) -> Any:
-    """Start the cluster of a profile with all its workers, on this machine or as batch jobs.
+    """Start a cluster from a profile, with workers on this machine or as batch jobs; return it.
 
     Parameters
     ----------

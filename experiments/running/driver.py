@@ -75,7 +75,7 @@ class Tally:
         Number of runs that the experiment needs (as far as known, if the design has stages), and
         number of those that are finished and stored.
     ran
-        Number of runs made by the driver, including failed ones.
+        Number of runs executed by the driver, including failed ones.
     failed
         Failed runs, as pairs of arm and replication.
     """
@@ -87,7 +87,7 @@ class Tally:
 
 
 def drive(plan: Plan, store: Store, engine: Engine, watcher: Watcher | None = None) -> Tally:
-    """Make those runs of a plan that are not finished yet.
+    """Execute the runs of a plan that are not finished yet.
 
     Runs that failed or were interrupted earlier are repeated.
 
@@ -139,7 +139,7 @@ class _Driver:
         return schedule(self.plan, pd.DataFrame(self.known, columns=head), self.tally.failed)
 
     def _remember(self) -> None:
-        """Read what the stages look at of the runs that are finished."""
+        """Read the columns of finished runs on which the stages depend."""
         if not self.plan.design.stages:
             return
         rows = self.store.rows(["arm_digest", "replication", *self.looked_at])
@@ -171,7 +171,7 @@ class _Driver:
             self.watcher.tick()
 
     def _once_more(self, job: Job, outcome: Outcome) -> bool:
-        """Whether a run whose worker died gets another chance."""
+        """Return whether to repeat a run whose worker died; count the attempt."""
         self.attempts[job.key] = self.attempts.get(job.key, 1) + 1
         if self.attempts[job.key] > ATTEMPTS:
             return False

@@ -57,7 +57,7 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
     Raises
     ------
     InputError
-        If an input file is not the one that was planned with.
+        If an input file has changed since the plan was made.
     RuntimeError
         If the motion is not safe: a defect.
     """
@@ -87,7 +87,7 @@ def _simulated(job: Job) -> dict[str, pd.DataFrame]:
 
 
 def _keeper(job: Job) -> DecisionRecorder | None:
-    """Return what writes the questions of a run below the folder of the design."""
+    """Return an observer that records questions to optimisers; None if they are not recorded."""
     if not job.decisions:
         return None
     run = {part: Path(given).stem for part, given in job.inputs.items()}
@@ -97,10 +97,10 @@ def _keeper(job: Job) -> DecisionRecorder | None:
 
 
 def _forget_changed(files: dict[str, str]) -> None:
-    """Let changed modules of users be imported again: workers of a cluster live longer than one.
+    """Let changed modules of users be imported again; a cluster worker executes several jobs.
 
-    If one of them has changed since this process has seen it, all of them are forgotten, so that
-    none holds on to what another one was.
+    If one of them has changed since this process imported it, all of them are imported again, so
+    that none refers to an old version of another.
     """
     mine = {name: known for name, known in files.items() if name.endswith(".py")}
     if any(_SEEN.get(name, known) != known for name, known in mine.items()):

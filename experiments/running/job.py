@@ -23,7 +23,7 @@ class Job:
     files
         Hash of every input file of the design, checked by the worker.
     measures
-        References to the user's own measures.
+        References to user-defined measures (see `rmfs.references`).
     decisions
         Folder in which the questions to optimisers are recorded; empty if they are not recorded.
     """
@@ -46,11 +46,11 @@ class Job:
 
     @property
     def key(self) -> str:
-        """Identity of the run: the same key means the same results."""
+        """Key that identifies the run; runs with the same key have the same results."""
         return run_key(self.arm_digest, self.seed)
 
     def __str__(self) -> str:
-        """Name the run for people."""
+        """Return the name of the run for messages."""
         return f"{self.arm}, seed {self.seed}"
 
 

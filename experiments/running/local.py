@@ -1,4 +1,4 @@
-"""Makes runs on this machine, several in parallel, each in a separate process.
+"""Executes runs on this machine, several in parallel, each in a separate process.
 
 Processes are forked from a server process that has imported all modules but never simulates. A run
 therefore starts within milliseconds, in fresh memory, independently of all other runs.
@@ -46,7 +46,7 @@ class Engine(Protocol):
 
     @property
     def slots(self) -> int:
-        """Maximum number of submitted jobs that should be unfinished at a time."""
+        """Maximum number of jobs that should be submitted but unfinished at any time."""
 
     def submit(self, job: Job) -> None:
         """Start a job."""
@@ -129,7 +129,7 @@ class LocalProcesses:
 
 
 def _received(one: _Running) -> Outcome:
-    """Return what the worker said, or that it is gone."""
+    """Return the outcome that the worker sent, or a failure if the worker died."""
     try:
         outcome: Outcome = one.receiver.recv()
     except (EOFError, OSError, ValueError):
@@ -149,7 +149,7 @@ def _last_words(code: int | None) -> str:
 
 
 def _worker(sender: connection.Connection, job: Job, work: Callable[[Job], Outcome] | None) -> None:
-    """Do one job and send what came of it."""
+    """Execute one job and send its outcome."""
     # the driver decides what an interruption means
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if work is None:
@@ -172,7 +172,7 @@ def _forget_earlier_memory() -> None:
 
 @contextmanager
 def _uninterrupted() -> Iterator[None]:
-    """Put off an interruption: a process that is half started would complain of it."""
+    """Delay an interruption (Ctrl-C) while a process is being started."""
     if threading.current_thread() is not threading.main_thread():
         yield  # nothing is interrupted here
         return
@@ -190,8 +190,8 @@ def _uninterrupted() -> Iterator[None]:
 def _without_main() -> Iterator[None]:
     """Hide the user's script from a process that is started.
 
-    It would be imported there once more: a waste of time, and an endless loop where the script does
-    not guard what it does with `if __name__ == "__main__"`.
+    Otherwise, the process would import the script again. This takes time, and leads to an endless
+    loop if the script does not contain `if __name__ == "__main__"`.
     """
     script = sys.modules["__main__"]
     sys.modules["__main__"] = ModuleType("__main__")
@@ -203,7 +203,7 @@ def _without_main() -> Iterator[None]:
 
 @contextmanager
 def _environment(values: dict[str, str]) -> Iterator[None]:
-    """Set environment variables for what is started meanwhile."""
+    """Set environment variables for processes that are started within this context."""
     before: dict[str, Any] = {name: os.environ.get(name) for name in values}
     os.environ.update(values)
     try:

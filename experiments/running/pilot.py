@@ -45,7 +45,7 @@ class Estimate:
     runs
         Number of runs on which the estimate is based.
     source
-        Origin of the figures, in words.
+        Origin of the estimate, as text for messages.
     """
 
     run_s: float
@@ -54,12 +54,12 @@ class Estimate:
     source: str
 
     def total_s(self, runs: int, processes: int) -> float:
-        """Return the wall time of `runs` runs in `processes` parallel processes, in s."""
+        """Return the wall time in s that `runs` runs take with `processes` parallel processes."""
         return self.run_s * runs / max(1, min(processes, runs))
 
 
 def estimate(plan: Plan, store: Store) -> Estimate | None:
-    """Estimate the duration of a run of a design; None if no pilot run succeeded."""
+    """Estimate the duration of a run; None if pilot runs are needed and none of them succeeds."""
     from rmfs.experiments.results import assigned
 
     known = assigned(plan, store)
@@ -84,7 +84,7 @@ def estimate(plan: Plan, store: Store) -> Estimate | None:
 
 
 def _tried(job: Job) -> float:
-    """Simulate the beginning of a run and return the wall time that the whole would take."""
+    """Simulate the beginning of a run; return the estimated wall time of the whole run, in s."""
     begun = time.perf_counter()
     inputs = resolve.load(job.inputs, job.overrides)
     whole_s = inputs.scenario.warmup_s + inputs.scenario.duration_s

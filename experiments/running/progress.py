@@ -19,7 +19,7 @@ LINE_EVERY_S = 10.0
 
 
 def time_left_s(begun_s: float, now_s: float, ran: int, left: int) -> float:
-    """Return the time for `left` runs in s, estimated from the first `ran`; inf if `ran` is 0."""
+    """Return the estimated time in s for `left` more runs after `ran` runs; inf if `ran` is 0."""
     return (now_s - begun_s) / ran * left if ran else float("inf")
 
 
@@ -33,7 +33,7 @@ def spoken(seconds: float) -> str:
 
 
 class Lines:
-    """Reports progress as lines."""
+    """Reports progress as lines of text."""
 
     def __init__(self, stream: TextIO) -> None:
         self.stream = stream
@@ -73,7 +73,7 @@ class Lines:
 
 
 class Bar:
-    """Reports progress as a bar."""
+    """Reports progress as a progress bar."""
 
     def __init__(self, progress: Progress, task: TaskID) -> None:
         self.progress, self.task = progress, task

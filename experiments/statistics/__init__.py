@@ -1,6 +1,6 @@
 """Statistics of simulation experiments, on top of scipy and statsmodels.
 
-Every function takes plain numbers or the frame that `experiments.load` returns.
+Every function takes plain numbers or a frame returned by `experiments.load`.
 """
 
 from rmfs.experiments.statistics.anova import anova as anova

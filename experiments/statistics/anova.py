@@ -1,9 +1,9 @@
 """Analysis of variance: how much of the variation of a measure each factor explains.
 
-Every effect is found by comparing two linear models, with and without it, fitted by least squares.
-The rank of a model counts as its number of parameters. An interaction therefore has fewer degrees
-of freedom if a design leaves out combinations of levels. Effects that the design cannot separate
-are detected.
+Every effect is determined by comparing two linear models, with and without the effect, fitted by
+least squares. The number of parameters of a model is taken to be its rank. An interaction therefore
+has fewer degrees of freedom if a design leaves out combinations of levels. Effects that the design
+cannot separate are detected.
 """
 
 from __future__ import annotations
@@ -57,19 +57,19 @@ def anova(
     Interactions of two factors have one row each if the runs can separate all effects and leave at
     least one degree of freedom for the residual. Otherwise (as in a fractional design), a single
     row, `interactions`, holds all differences between combinations of levels that the main effects
-    do not explain, and the residual is the variation between runs of the same combination. If no
-    combination has been run twice, this is impossible, and interactions are part of the residual.
-    `attrs["interactions"]` of the table states which case applies.
+    do not explain, and the residual is the variation between runs of the same combination. If there
+    are too few runs even for this, interactions are part of the residual. The table's attribute
+    `attrs["interactions"]` states which case applies.
 
     Parameters
     ----------
     factors
-        Columns; factors with one level are left out.
+        Columns of the factors; those with only one level are left out.
     interactions
         Whether to separate interactions from the residual. Default True.
     block
-        Column of the seeds. With common random numbers, the variation between seeds is not part of
-        the residual but has its own row. None: it is part of the residual. Default `replication`.
+        Column of the seeds. The variation between seeds gets its own row, as is appropriate with
+        common random numbers. None: the variation is part of the residual. Default `replication`.
     confidence
         Confidence of the intervals of `partial_eta_sq`. Default 0.95.
     names
@@ -121,7 +121,7 @@ def tell_apart(frame: pd.DataFrame, factors: Sequence[str]) -> bool:
     Parameters
     ----------
     factors
-        Columns; factors with one level are left out.
+        Columns of the factors; those with only one level are left out.
     """
     codes = [_coded(frame[factor]) for factor in varying_factors(frame, factors)]
     mains, pairs = _effects(len(codes))
@@ -151,11 +151,11 @@ class _Data:
     y
         A value per run.
     factors
-        Per factor the columns that tell its levels from the first one.
+        For each factor, the indicator columns of all levels but the first.
     block
-        The same of the seeds.
+        Indicator columns of all seeds but the first; None: models ignore the seeds.
     effects
-        All that models may hold.
+        All effects that models may contain.
     """
 
     def __init__(
@@ -220,7 +220,7 @@ class _Data:
 
 
 def _fitted(model: NDArray[np.float64], y: NDArray[np.float64]) -> _Fit:
-    """Return what a model leaves of y; a column that says nothing new is no parameter."""
+    """Fit a model to y; columns that depend linearly on others do not count as parameters."""
     basis, triangle, _ = linalg.qr(model, mode="economic", pivoting=True)
     size = np.abs(np.diag(triangle))
     basis = basis[:, size > NEGLIGIBLE * max(1.0, size[0])]
@@ -281,14 +281,14 @@ def _table(
 
 
 def _between(data: _Data, effect: Effect, model: Sequence[Effect]) -> tuple[float, int]:
-    """Return what an effect explains after all others of a model that do not contain it."""
+    """Return sum of squares and degrees of freedom of an effect (type II) in a model."""
     others = [other for other in model if not set(effect) <= set(other)]
     without, present = data.fit(others), data.fit([*others, effect])
     return max(0.0, without.rest - present.rest), present.rank - without.rank
 
 
 def _told_apart(data: _Data, mains: list[Effect], pairs: list[Effect]) -> bool:
-    """Whether no effect loses degrees of freedom to the interactions beside it."""
+    """Whether no effect loses degrees of freedom if interactions are in the model."""
     model = [*mains, *pairs]
     return all(
         _between(data, effect, model)[1] == _between(data, effect, [*mains, effect])[1] > 0

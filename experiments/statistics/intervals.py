@@ -58,7 +58,7 @@ def interval(
     values
         One number per run; missing values are ignored.
     confidence
-        Probability that intervals made this way cover the true mean. Default 0.95.
+        Probability with which such an interval covers the true mean. Default 0.95.
     method
         `t`: Student's t, exact if the values are normally distributed. `bootstrap`: bias-corrected
         and accelerated (Efron 1987), for other distributions; with few runs, its intervals are too
@@ -98,7 +98,7 @@ def per_arm(
     method: Method = "t",
     by: str = "arm",
 ) -> pd.DataFrame:
-    """Return mean and interval of a column for every arm.
+    """Return the mean of a column and its confidence interval, for every arm.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def per_arm(
 
     Returns
     -------
-    One row per arm, in the order of their first appearance: `count`, `mean`, `low`, `high`,
+    One row per arm, in order of first appearance. Columns: `count`, `mean`, `low`, `high`,
     `half_width`, `relative_half_width` (half width divided by the absolute value of the mean) and
     `sd` (standard deviation).
     """

@@ -54,11 +54,12 @@ def paired(
 
 
 def unpaired(arm: pd.Series, baseline: pd.Series, *, confidence: float = 0.95) -> dict[str, float]:
-    """Compare two arms that share no seeds: Welch's t test and its interval.
+    """Compare two arms that share no seeds, by Welch's t test.
 
     Returns
     -------
-    As for `paired`, but `pairs` is 0, and `p` is that of Welch's test.
+    The same entries as `paired` returns; `pairs` is 0, and `low`, `high` and `p` are those of
+    Welch's test.
     """
     a, b = arm.dropna().to_numpy(dtype=float), baseline.dropna().to_numpy(dtype=float)
     difference = float(a.mean() - b.mean()) if len(a) and len(b) else np.nan
@@ -93,15 +94,15 @@ def against(
     Parameters
     ----------
     baseline
-        The arm to which the others are compared.
+        The arm with which the others are compared.
     pair
         Column that identifies pairs. Default `replication`, the seed as given in the design.
 
     Returns
     -------
-    One row per other arm, with what `paired` returns, `p_holm` (`p` corrected for the comparisons
-    in all rows by Holm's method; Holm 1979) and `direction` ("higher" or "lower" than the baseline;
-    "unclear" unless `p_holm` is below 1 - `confidence`).
+    One row per other arm. Columns: the entries that `paired` returns; `p_holm`, which is `p`
+    corrected for the number of rows by Holm's method (Holm 1979); and `direction`: "higher" or
+    "lower" than the baseline if `p_holm` is below 1 - `confidence`, otherwise "unclear".
 
     Raises
     ------
@@ -130,7 +131,7 @@ def against(
 
 
 def holm(p_values: pd.Series) -> pd.Series:
-    """Return p values corrected by Holm's method; missing ones stay missing."""
+    """Return p values corrected by Holm's method; missing values stay missing."""
     from rmfs.experiments.extras import statsmodels
 
     known = p_values.dropna()

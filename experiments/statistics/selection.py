@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Selection:
-    """State of the procedure after the available observations.
+    """State of the procedure after it has used the available observations.
 
     Attributes
     ----------
@@ -35,15 +35,15 @@ class Selection:
     used
         Number of observations used, by arm.
     observations
-        Number of observations used of each arm in `left`.
+        Number of observations used so far of each arm in `left` (the same for all).
     over
         Whether the procedure has ended; otherwise it needs more observations of arms in `left`.
     best
         The selected arm; if the procedure was stopped early, the arm in `left` with the best mean.
         None before the end.
     proven
-        Whether `best` is selected with the stated probability of error; false before the end, and
-        if the procedure was stopped early, at the maximum number of observations.
+        Whether `best` is selected with the stated probability of error. False before the end, and
+        false if the procedure was stopped early because of the maximum number of observations.
     """
 
     left: tuple[str, ...]

@@ -15,10 +15,12 @@ def narrow_enough(values: Sequence[float], relative: float, confidence: float = 
 
     This is the stopping rule of the sequential procedure of Law and Kelton (Simulation Modeling and
     Analysis, section on confidence intervals with specified precision, after Chow and Robbins
-    1965). The half width is compared with relative / (1 + relative) times the mean, so that the
-    error relative to the true mean is at most `relative` if the interval covers the true mean. As
-    the procedure tends to stop when the sample happens to vary little, the interval covers the true
-    mean with a probability somewhat below `confidence` if the procedure starts with few runs (see
+    1965). The half width must be at most relative / (1 + relative) times the absolute value of the
+    mean. If the interval covers the true mean, the error relative to the true mean is then at most
+    `relative`.
+
+    The procedure tends to stop when the sample happens to vary little. If it starts with few runs,
+    the interval therefore covers the true mean with a probability somewhat below `confidence` (see
     `tests.tools.coverage`).
 
     Parameters

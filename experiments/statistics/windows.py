@@ -21,7 +21,7 @@ def rates(
     end_s: float = float("inf"),
     keys: Sequence[str] = ("arm", "replication"),
 ) -> pd.DataFrame:
-    """Return, for every run, amounts per hour within a time window.
+    """Return hourly rates within a time window, for every run.
 
     Only intervals of the time series that lie completely within the window are counted.
 
@@ -38,7 +38,7 @@ def rates(
 
     Returns
     -------
-    One row per run: the keys, and each column per hour.
+    One row per run: the keys, and the amount per hour of each column.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""Studies of traffic alone: planners on the same trips, and growth of effort with the fleet."""
+"""Studies of path planners: comparisons, growth of computing time with the fleet, and guidance."""

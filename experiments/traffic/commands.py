@@ -112,7 +112,7 @@ def duel(
     agents: Agents = None,
     tasks: Tasks = None,
 ) -> None:
-    """Compare planners on the same trips: random ones or, for a grid in a .map file, given ones."""
+    """Compare planners on the same trips: random trips or, on a .map grid, trips from files."""
     names = planner or duels.all_planners()
     duels.check_planners(names)
     loaded, trips = _given(

@@ -1,7 +1,8 @@
 """Optimisation of guidance for a layout, by CMA-ES over simulated runs.
 
-A vector of weights, one per feature of the edges, defines the extra cost of every edge. Its value
-is the mean objective of runs with several seeds, the same for all vectors (common random numbers).
+A vector of weights, one per feature of the edges, defines the extra cost of every edge. The value
+of a vector is the mean objective of runs with several seeds, which are the same for all vectors
+(common random numbers).
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ class Found:
     extra_s
         Extra cost of each edge in s, aligned with `edge_target`.
     value, base_value
-        Mean objective over the other seeds, with and without this guidance.
+        Mean objective with and without this guidance, over the seeds `Task.other_seeds`.
     history
         One row per generation: its number (`generation`), and the best and the mean value of its
         vectors (`best`, `mean`) over the seeds of the task.
@@ -102,11 +103,12 @@ def optimise(
     Parameters
     ----------
     start
-        Weights from which the search starts, in s; those not named are 0. Default: a twenty-fifth
-        of the largest ones. Without generations, these weights are the result.
+        Weights from which the search starts, in s; weights not named are 0. Default: 1/25 of the
+        largest weights that the search tries (`LARGEST`). If `generations` is 0, these weights are
+        the result.
     generations, population
-        Number of generations, and of vectors of weights per generation; each is simulated with all
-        seeds of the task.
+        Number of generations, and number of vectors of weights per generation; each vector is
+        simulated with all seeds of the task.
     seed
         Seed of the search; the result does not depend on the number of processes.
     jobs
@@ -172,8 +174,9 @@ def _search(
 ) -> tuple[list[NDArray[np.float64]], list[tuple[int, float, float]]]:
     """Return the best weights found, and the history of the search.
 
-    The search moves in the roots of the weights, relative to the largest: small weights, which may
-    already decide between two paths of equal length, then take as much room as large ones.
+    The coordinates of the search are the square roots of the weights, relative to the largest
+    weights. Small weights, which may already decide between two paths of equal length, are then
+    searched more finely than large ones.
     """
     try:
         with warnings.catch_warnings():

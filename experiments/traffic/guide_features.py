@@ -1,4 +1,4 @@
-"""Features of edges, from which guidance is made: sums of a few features, each with a weight."""
+"""Features of edges; the extra cost of an edge is the weighted sum of its features."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def features(
     Parameters
     ----------
     edges, heat
-        Tables of the same names of an earlier run, or of several runs one after the other.
+        The tables `edges` and `heat` of an earlier run, or of several runs (concatenated).
     """
     tails, heads = edge_sources(layout), layout.edge_target
     aisle = ~(layout.is_storage | layout.is_queue)

@@ -1,4 +1,4 @@
-"""What guidance is optimised for: runs with orders, or random trips without orders."""
+"""Tasks for which guidance is optimised: runs with orders, or random trips without orders."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ KEY = "controllers.pp.guidance"
 
 @dataclass(frozen=True)
 class Task(ABC):
-    """What is simulated, and the objective, which is maximised.
+    """What is simulated to evaluate guidance, and the objective to maximise.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Task(ABC):
         return layouts.load(self.layout, own)
 
     def other_seeds(self) -> list[int]:
-        """Return twice as many other seeds, which follow the greatest."""
+        """Return other seeds, twice as many as `seeds`: the numbers after the greatest of them."""
         return [max(self.seeds) + 1 + number for number in range(2 * len(self.seeds))]
 
     @abstractmethod
@@ -77,12 +77,12 @@ class Task(ABC):
 
     @abstractmethod
     def value(self, guidance: Path, seed: int) -> float:
-        """Return the objective of a run with the guidance in a file."""
+        """Return the objective of a run with guidance read from a file."""
 
 
 @dataclass(frozen=True)
 class Orders(Task):
-    """Runs with orders.
+    """Task in which runs with orders are simulated.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Orders(Task):
     Raises
     ------
     InputError
-        Also if a column does not exist.
+        As for `Task`; also if `objective` is empty or names a column that does not exist.
     """
 
     scenario: str = "default"
@@ -129,17 +129,19 @@ class Orders(Task):
 
 @dataclass(frozen=True)
 class Trips(Task):
-    """Random trips without orders, in which every robot always has a trip; more trips are better.
+    """Task in which random trips without orders are simulated; the objective is trips per hour.
+
+    Every robot always has a trip.
 
     Attributes
     ----------
     warmup_s, duration_s
-        Simulated time before measuring, and measured, in s.
+        Length of the warm-up and length of the measured time, in s.
 
     Raises
     ------
     InputError
-        Also if a parameter is not one of the layout.
+        As for `Task`; also if `set` contains a parameter that does not belong to the layout.
     """
 
     warmup_s: float = 300.0
@@ -166,7 +168,7 @@ class Trips(Task):
         return self.run(seed, guidance).trips_per_h
 
     def run(self, seed: int, guidance: Path | None = None) -> TripRun:
-        """Drive random trips, with the guidance in a file or without any."""
+        """Drive random trips, with guidance read from a file or without guidance."""
         layout = self.load()
         planner = TIME_WINDOWS._replace(
             seed=seed, guidance=() if guidance is None else read_guidance(guidance, layout)

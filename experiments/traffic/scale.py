@@ -1,9 +1,9 @@
 """Growth of computing time and memory with the fleet: `rmfs traffic scale`.
 
 The layouts are generated like the shipped layout `default`, with 28 to 31 waypoints and about 1/16
-of a station (with 32 robots, 1/8) per robot. One planner plans random trips. Each size has its
-own process, so that its memory can be measured. Times are processor times, which equal wall times
-on an otherwise idle core.
+of a station (with 32 robots, 1/8) per robot. One planner plans random trips. Each size is measured
+in a separate process, because memory is measured per process. Times are processor times, which
+equal wall times on an otherwise idle core.
 """
 
 from __future__ import annotations
@@ -104,12 +104,12 @@ def table(
     seed: int = 1,
     tell: Callable[[str], None] = print,
 ) -> pd.DataFrame:
-    """Measure all sizes up to `most` robots; return one row each.
+    """Measure all sizes up to `most` robots; return a table with one row per size.
 
     Parameters
     ----------
     planner
-        The planner, as for `rmfs.experiments.traffic.duel.settings`.
+        The planner as text, as for `rmfs.experiments.traffic.duel.chosen`.
     tell
         Function called with the text of each row as soon as the row is measured.
     """
@@ -211,7 +211,7 @@ def exponent(frame: pd.DataFrame, column: str = "trips/h") -> float:
 
 
 def picture(frame: pd.DataFrame, path: Path) -> None:
-    """Draw time and memory over the number of robots."""
+    """Plot computing time and memory against the number of robots."""
     robots = frame.index.to_numpy()
     with saving(path, 8.0, 3.6) as figure:
         left, right = figure.subplots(1, 2)

@@ -1,9 +1,9 @@
 """Growth of the computing time of whole warehouses with the fleet: `rmfs traffic warehouses`.
 
 The layouts are generated like the shipped layout `default`, with about ten pods and 1/12 of a pick
-station per robot. The backlog is constant, and rules decide. Each run has its own process, so that
-its memory can be measured. Times are processor times, which equal wall times on an otherwise idle
-core. Two windows of simulated time are measured: the rush at the start, and a later window, in
+station per robot. The backlog is constant, and rules decide. Each run has its own process, because
+memory is measured per process. Times are processor times, which equal wall times on an otherwise
+idle core. Two windows of simulated time are measured: the rush at the start, and a later window, in
 normal operation.
 """
 
@@ -188,8 +188,8 @@ def advance_by_windows(simulation: Simulation, until_s: float) -> int:
 
     Returns
     -------
-    The largest count of any window, by `standing_with_work`. The last window, of at most
-    `WINDOW_S`, is not included.
+    The largest number of such robots in any window (see `standing_with_work`). The last window,
+    of at most `WINDOW_S`, is not included.
     """
     most = 0
     motion = simulation.traffic.motion()
@@ -209,7 +209,7 @@ def standing_with_work(motion: dict[str, NDArray[Any]]) -> int:
     Parameters
     ----------
     motion
-        What `Traffic.motion` has counted in the window.
+        The times of `Traffic.motion` that elapsed in the window.
     """
     moved = motion["moving_s"] + motion["turning_s"] + motion["transfer_s"] + motion["served_s"]
     return int(np.sum((moved <= 1e-6) & (motion["waiting_s"] >= WINDOW_S - 1e-6)))

@@ -69,7 +69,7 @@ class LazyGroup(TyperGroup):
         return super().get_command(ctx, cmd_name)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
-        """Load the command that is called."""
+        """Find the command that is called, and load it if it is not loaded yet."""
         if args and args[0] in ELSEWHERE:
             self.add_command(_loaded(args[0]), args[0])
         return super().resolve_command(ctx, args)

@@ -197,7 +197,7 @@ def run(
 def kept_decisions(
     folder: Path, inputs: dict[str, str], seed: int, changes: Sequence[str] = ()
 ) -> DecisionRecorder:
-    """Return an observer that writes one file in a folder for each question asked of an optimiser.
+    """Return an observer that saves each question to an optimiser as a file in a folder.
 
     Questions of a kind that the file format does not cover are left out.
     """
@@ -208,7 +208,7 @@ def kept_decisions(
 
 
 def simulated(inputs: dict[str, str], *, seed: int, **options: Any) -> Run:
-    """Simulate and show progress.
+    """Simulate with a display of progress; return the finished run.
 
     The command prints the reason and exits with code 1 in each of these cases: no robot can move
     any more; a user's rule makes an impossible decision; an optimiser fails in a run that must be

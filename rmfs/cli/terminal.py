@@ -20,9 +20,10 @@ def step(text: str) -> None:
 
 @contextmanager
 def progress(text: str, *, wordy: bool = True) -> Iterator[Callable[[float, float], None]]:
-    """Yield a function of (done, total) that shows progress by a bar on a terminal, else by a line.
+    """Yield a function of (done, total) that shows progress: a bar on a terminal, otherwise a line.
 
-    The line is printed when the function is first called: not at all if the inputs are wrong.
+    The line is printed when the function is called with `done` = 0. If the inputs are wrong, the
+    function is never called, and no line is printed.
 
     Parameters
     ----------

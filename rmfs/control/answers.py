@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Candidates:
-    """The possible answers to a question, C in number: a row per answer, a column per attribute.
+    """A table of the C possible answers to a question: a row per answer, a column per attribute.
 
     `candidates[row]` is the answer of that row, to be passed to `Decision.answer`.
 

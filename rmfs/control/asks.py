@@ -28,15 +28,15 @@ Plain = NDArray[Any] | int | float | str | bool | Sequence["Plain"]
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What an optimiser found.
+    """The answer of an optimiser to a question.
 
     Attributes
     ----------
     solution
         Values by name; None if there is no solution or none was found in time.
     objective, bound
-        Cost of the solution, and proven lower bound on the cost of any solution. A value that is
-        not known is not finite.
+        Cost of the solution, and proven lower bound on the cost of any solution; each is nan or
+        infinite if it is unknown.
     status
         Final status, as the solver names it.
     backend
@@ -172,7 +172,7 @@ class Asker(Protocol):
 
 @dataclass(eq=False)
 class Call:
-    """One question in a run, and what became of it.
+    """One question to an optimiser in a run, with its answer and outcome.
 
     Attributes
     ----------
@@ -227,10 +227,10 @@ class Call:
     def left(self, name: str, parts: Sequence[D]) -> Iterator[D]:
         """Yield the parts of an answer that have not been handled yet.
 
-        A TA rule that iterates over its answer in this way can be resumed in the middle. This is
-        needed if a program outside the simulation decides PPS, PSA or repositioning: `answered` is
-        interrupted by the first question to the program, and called again when the program has
-        answered it (`Controller.goes_on`).
+        A TA rule that iterates over its answer in this way can be resumed in the middle (see
+        `Controller.goes_on`). This is needed if a program outside the simulation decides PPS, PSA
+        or repositioning: a question to this program interrupts `Controller.answered`, which is
+        called again when the program has answered.
 
         Parameters
         ----------
@@ -283,7 +283,7 @@ def told_by(decision: Any, otherwise: Call | None) -> tuple[Any, Call | None]:
 
 
 def own(decisions: Iterable[D]) -> Iterator[D | By[D]]:
-    """Yield the decisions, attributed to the controller's own rule even within `answered`.
+    """Yield decisions and attribute them to the controller's own rule, even within `answered`.
 
     Questions (`Ask`) are passed on unchanged.
     """

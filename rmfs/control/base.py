@@ -91,10 +91,10 @@ class Controller(Generic[P]):
         Modules with the functions that answer its questions (`rmfs.control.asks`); required of
         controllers that ask optimisers.
     goes_on
-        Whether `answered` continues where it stopped (`Call.left`) if it is called again with the
-        same call, after a question to a program outside the simulation interrupted it. If PPS,
-        PSA or repositioning is decided outside the simulation, this is required of a TA rule that
-        asks optimisers.
+        Whether `answered`, after an interruption, continues where it stopped if it is called again
+        with the same call (see `Call.left`). Questions to a program outside the simulation cause
+        such interruptions. If PPS, PSA or repositioning is decided outside the simulation, this
+        must be true for a TA rule that asks optimisers.
     looks_ahead
         Whether it needs the attribute `lookahead`, with which it can try out decisions.
     in_flight
@@ -135,9 +135,9 @@ class Controller(Generic[P]):
         """Yield, as `decide` does, those decisions of a solution that are still valid.
 
         This method is called when a question has been answered, even if there is no solution. If
-        `goes_on` is true, it may be called again with the same call after an interruption. It adds
-        to `call.stale` the number of decisions that are no longer valid, and it wraps in
-        `rmfs.control.asks.By` those decisions that do not come from this answer. The base class
+        `goes_on` is true, it may be called again with the same call after an interruption. An
+        implementation adds to `call.stale` the number of decisions that are no longer valid. It
+        wraps decisions that do not come from this answer in `rmfs.control.asks.By`. The base class
         yields no decisions.
         """
         return iter(())

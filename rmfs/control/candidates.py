@@ -1,4 +1,7 @@
-"""The possible answers to each kind of question, with the attributes that rules compare."""
+"""The possible answers to each kind of question, with the attributes that rules compare.
+
+The kinds of question are defined in `rmfs.control.questions`.
+"""
 
 from __future__ import annotations
 
@@ -38,13 +41,13 @@ if TYPE_CHECKING:
 
 
 def candidates_for(view: View, question: Question, refused: Sequence[Any] = ()) -> Candidates:
-    """List the possible answers to a question; the list is empty if MM is asked for a decision.
+    """Return the possible answers to a question; there are none if MM is asked for a decision.
 
     Parameters
     ----------
     refused
         Decisions already made in this turn that could not be carried out. If TA is asked for a
-        decision, they are left out; otherwise, they have no effect.
+        decision, they are not offered again; for other questions, this parameter is ignored.
     """
     if question.kind != "turn":
         return _OF_KIND[question.kind](view, view.robots[question.robot], question.stations)

@@ -53,12 +53,14 @@ class Choice:
 
 
 def choose(problem: Problem, table: Table, source: str) -> Choice:
-    """Validate the table of a problem: `name` selects the controller, other keys are parameters.
+    """Return the controller that the table of a problem selects, with validated parameters.
+
+    The key `name` selects the controller; the other keys are its parameters.
 
     Raises
     ------
     InputError
-        If the name, a key or a value is invalid; the message names the key and what would be valid.
+        If the name, a key or a value is invalid; the message states the key and what is valid.
     """
     parameters = dict(table)
     name = parameters.pop("name", DEFAULTS[problem])

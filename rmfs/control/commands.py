@@ -55,7 +55,7 @@ def show(
 
 @app.command()
 def check(controllers: Name) -> None:
-    """Check a set of controllers: report what is wrong, or the controllers that the set selects."""
+    """Check a set of controllers, and list the controllers that it selects."""
     read, notes = load_with_notes(controllers)
     _print_notes(notes)
     choices = read.choices.values()

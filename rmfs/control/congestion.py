@@ -30,22 +30,29 @@ class CongestionParameters(Parameters):
     def delay_s(
         self, view: View, waypoint: int, others: NDArray[np.integer]
     ) -> NDArray[np.float64] | float:
-        """Return the weighted delay on trips from a waypoint to n others, in s, shape (n,) or 0."""
+        """Return the weighted delay in s on the trips from a waypoint to n others, shape (n,).
+
+        If `congestion` is 0, the number 0 is returned instead of an array.
+        """
         if not self.congestion:
             return 0.0
         return self.congestion * self.tracker(view).on_trips(waypoint, others)
 
     def tracker(self, view: View) -> Congestion:
-        """Return the tracker of the delay; rules request it in their constructor.
+        """Return the tracker of the delay, creating it if necessary.
 
         Raises
         ------
         InputError
-            If `congestion_from` is not a table of a run in this layout.
+            If `congestion_from` is neither `recent` nor `forecast` nor the path of a table `heat`
+            of a run in this layout.
         """
         return view.trackers.get(Congestion, self.congestion_from)
 
     def prepare(self, view: View) -> None:
-        """Request the tracker if it is needed."""
+        """Create the tracker of the delay, unless `congestion` is 0.
+
+        Rules call this method in their constructor, so that the tracker observes all events.
+        """
         if self.congestion:
             self.tracker(view)

@@ -115,7 +115,7 @@ class Visit(NamedTuple):
 class Park(NamedTuple):
     """TA: let a robot store the pod it carries at a storage location (`place`, a waypoint).
 
-    In a task of `Prepare`, `place` may be -1: PSA then chooses the location when the task begins.
+    In a `Prepare` decision, `place` may be -1; PSA then chooses the location when the task begins.
     """
 
     robot: Robot

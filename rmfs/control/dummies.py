@@ -1,8 +1,8 @@
 """Dummies: placeholders for the controllers of problems that a joint controller decides.
 
-A joint controller is the controller of another problem and lists these problems in `decides`; only
-for such problems may a controllers file select a dummy. A dummy makes no decision: it is not asked,
-or it answers that there is nothing to do.
+A joint controller is the controller of one problem and also decides others, which it lists in
+`decides`. For these other problems, and only for them, a controllers file selects a dummy. A dummy
+makes no decisions: either it is never called, or it answers that there is nothing to do.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class DummyPPS(PodSelection[LateBinding]):
         return -1
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Return the first of the given stations; in runs, the joint controller chooses."""
+        """Return the first of the given stations."""
         return stations[0]
 
 
@@ -144,7 +144,7 @@ class DummySA(StationActivation[NoParameters]):
 class DummyCA(ChargeAssignment[NoParameters]):
     """Leaves charging to another controller.
 
-    The simulation still sends a robot to charge if its charge is low.
+    The simulation itself still sends a robot to an energy station when its battery level is low.
     """
 
     is_dummy: ClassVar[bool] = True

@@ -142,7 +142,7 @@ def features_of(kinds: Iterable[str]) -> tuple[Feature, ...]:
 
 
 def numbers(candidates: Candidates, kind: str, view: View) -> dict[str, NDArray[np.float64]]:
-    """Return the unscaled features of the C candidates, by name, each of shape (C,)."""
+    """Return the unscaled features of C candidates by name, each as an array of shape (C,)."""
     return dict(zip(COLUMNS[kind], unscaled(candidates, kind, view), strict=True))
 
 
@@ -176,14 +176,17 @@ def matrix(columns: Mapping[str, NDArray[np.float64]], names: Sequence[str]) -> 
 
 
 def weights_of(kind: str, rankings: Mapping[str, Mapping[str, float]] = RANKINGS) -> Weights:
-    """Return the ranking of a kind of question as pairs of a place in `COLUMNS` and a weight."""
+    """Return the weights by which the candidates of a kind of question are ranked.
+
+    Each entry is a pair of a feature's index in `COLUMNS[kind]` and its weight.
+    """
     return [(COLUMNS[kind].index(name), weight) for name, weight in rankings[kind].items()]
 
 
 def best_rows(values: NDArray[np.float64], weights: Weights, k: int) -> NDArray[np.int64]:
     """Return the rows of the k candidates whose weighted sums of features are greatest, best first.
 
-    Values above 1e9 count as 1e9. If there are fewer than k candidates, all rows are returned. Ties
+    Features above 1e9 count as 1e9. If there are at most k candidates, all rows are returned. Ties
     go to the earlier row.
 
     Parameters
@@ -191,6 +194,6 @@ def best_rows(values: NDArray[np.float64], weights: Weights, k: int) -> NDArray[
     values
         The F unscaled features of the C candidates, shape (F, C).
     weights
-        Pairs of a feature (row of `values`) and its weight, in the order in which they are added.
+        Pairs of a feature (row of `values`) and its weight. The terms are added in this order.
     """
     return compiled.best_rows(values, weights, k)

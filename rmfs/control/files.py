@@ -1,4 +1,4 @@
-"""Files that parameters of controllers make a run read."""
+"""The input files named by parameters of controllers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def named_files(controllers: dict[str, Any]) -> dict[str, Path]:
-    """Return the files that controllers read, by key, such as `pp.guidance`.
+    """Return the files named by parameters of controllers, by key, such as `pp.guidance`.
 
     Parameters
     ----------
@@ -23,14 +23,14 @@ def named_files(controllers: dict[str, Any]) -> dict[str, Path]:
 
 
 def names_a_file(key: str, given: Any) -> bool:
-    """Return whether a parameter of a controller, or a part of it, makes a run read a file.
+    """Return whether the value of a controller's parameter, or a part of it, names an input file.
 
     Parameters
     ----------
     key
         Name of the parameter.
     given
-        Its value; the parts of tables and lists are examined as well.
+        Value of the parameter; if it is a table or a list, its parts are examined as well.
     """
     return any(True for _ in _files_in([key], given))
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 class Comparison:
     """Decisions to compare by trials: simulations of each decision in randomly drawn futures.
 
-    The first decision is the default: that of the base rule, which also makes the later decisions
-    on its problem in every trial.
+    The first decision is that of the base rule; it is the default. In every trial, the base rule
+    also makes all later decisions of the same problem.
 
     Attributes
     ----------
@@ -56,11 +56,11 @@ def solve(question: Comparison) -> Answer:
 
     First, all decisions are tried in one future. Each further round doubles the number of futures
     tried so far. After each round, the base rule's decision and the better half of the others are
-    kept; trials end early if none of the latter has, in the same futures, a greater mean value than
-    the base rule's decision. In the end, the best of the others is chosen if its mean advantage
-    over the base rule's decision exceeds `certainty` standard errors, and otherwise the base rule's
-    decision. Source: Karnin, Koren and Somekh (2013), "Almost optimal exploration in multi-armed
-    bandits".
+    kept. The trials end early if, in the futures tried so far, no other decision that is kept has a
+    greater mean value than the base rule's decision. In the end, the best of the others is chosen
+    if its mean advantage over the base rule's decision exceeds `certainty` standard errors;
+    otherwise, the base rule's decision is chosen. Source: Karnin, Koren and Somekh (2013), "Almost
+    optimal exploration in multi-armed bandits".
 
     Returns
     -------

@@ -28,8 +28,8 @@ def why_not(given: Any, question: Question, view: View) -> str:
     Parameters
     ----------
     given
-        A decision if the question is of kind `turn`; otherwise the number of a pod, station or
-        waypoint, or a `Move`.
+        The answer: a decision if the question is of kind `turn`; otherwise, the number of a pod,
+        station or waypoint, or a `Move`.
     """
     if question.kind != "turn":
         return _ANSWERS[question.kind](given, question, view)

@@ -48,12 +48,12 @@ def default_weights(kind: str) -> Weights:
 
 
 def checked(kind: str, weights: Mapping[str, float]) -> Weights:
-    """Return weights for all features of a kind of question; missing ones are 0.
+    """Return a weight for every feature of a kind of question; weights not given are 0.
 
     Raises
     ------
     ValueError
-        If a feature is unknown.
+        If a weight is given for an unknown feature.
     """
     unknown = [name for name in weights if name not in COLUMNS[kind]]
     if unknown:

@@ -2,9 +2,9 @@
 
 All candidates are scored by the same weights, so a score does not depend on the order of the
 candidates. The inputs are the scaled features of the candidate (`rmfs.control.features`) and of the
-warehouse (`rmfs.control.overview`). `rmfs learn-network` trains the weights. Evaluation needs NumPy
-only: it adds the terms of each sum in a fixed order and uses no function that is rounded
-differently from machine to machine, so runs are reproducible everywhere.
+warehouse (`rmfs.control.overview`). `rmfs learn-network` trains the weights. Evaluating a network
+needs no machine-learning library. The terms of each sum are added in a fixed order, and only
+operations that give the same result on every machine are used, so runs are reproducible everywhere.
 """
 
 from __future__ import annotations
@@ -63,12 +63,12 @@ class ScoringParameters(Parameters):
     """Parameters of all network rules."""
 
     candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
-    """Maximum number of candidates that are scored: the best by the ranking of the learning
-    environment."""
+    """Maximum number of candidates that the network scores. If there are more, only those ranked
+    highest by `rmfs.control.features.RANKINGS` are scored."""
 
 
 class Layer(Model):
-    """A layer of a network: weighted sums of its inputs."""
+    """A layer of a network; each output is a constant plus a weighted sum of the layer's inputs."""
 
     weights: tuple[Row, ...]
     """A row for each input, with a weight for each output."""
@@ -89,7 +89,7 @@ class Layer(Model):
 
 
 class Network(Model):
-    """Scores candidates: a weighted sum of their features, plus the output of layers."""
+    """Scores a candidate by a weighted sum of its features, plus the output of the layers."""
 
     linear: dict[str, pydantic.FiniteFloat] = pydantic.Field(default_factory=dict)
     """Weights of the scaled features of a candidate; of those not named, 0."""
@@ -126,7 +126,7 @@ class Network(Model):
 
 
 def start(kind: str) -> Network:
-    """Return the network of a kind of question before training: without layers."""
+    """Return the untrained network of a kind of question, which has no layers."""
     weights, constant = STARTS[kind]
     return Network(linear=weights, decline=None if constant is None else {CONSTANT: constant})
 
@@ -137,7 +137,8 @@ def checked(kind: str, network: Network) -> Network:
     Raises
     ------
     ValueError
-        If a feature is unknown, or the network scores declining where that is impossible.
+        If a feature is unknown or named twice in `inputs`, or if the network has a score for
+        declining although declining is impossible for this kind of question.
     """
     own = COLUMNS[kind]
     _refuse_unknown("linear", network.linear, own)
@@ -166,8 +167,8 @@ class Scorer:
     kind
         Kind of question, a key of `rmfs.control.features.COLUMNS`.
     candidates
-        Maximum number of candidates that are scored: the best by
-        `rmfs.control.features.RANKINGS`.
+        Maximum number of candidates that are scored; if there are more, only the best by
+        `rmfs.control.features.RANKINGS` are scored.
     """
 
     def __init__(self, kind: str, network: Network, candidates: int = CANDIDATES) -> None:
@@ -191,7 +192,8 @@ class Scorer:
     ) -> int:
         """Return the row with the highest score; -1 to decline, or if there is no candidate.
 
-        Ties go to the candidate that is ranked higher, and to a candidate rather than declining.
+        Ties between candidates go to the one that is ranked higher; a tie between a candidate and
+        declining goes to the candidate.
 
         Parameters
         ----------
@@ -222,9 +224,9 @@ class Scorer:
         Parameters
         ----------
         features
-            Scaled features of the candidates in order of `COLUMNS`, shape (C, F).
+            The F scaled features of each candidate, in order of `COLUMNS`, shape (C, F).
         whole
-            Scaled features of the warehouse in order of `GLOBAL_FEATURES`, shape (G,).
+            The G scaled features of the warehouse, in order of `GLOBAL_FEATURES`, shape (G,).
         """
         given = features.astype(np.float64)
         found = np.zeros(len(given))

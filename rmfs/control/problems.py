@@ -44,9 +44,9 @@ class Problem(StrEnum):
 
     @property
     def decisions(self) -> tuple[str, ...]:
-        """Names of the classes of its decisions in `rmfs.control.decisions`.
+        """Names of the classes in `rmfs.control.decisions` that represent decisions of the problem.
 
-        PP has none, nor have PPS, PSA and repositioning, which answer questions of TA.
+        The tuple is empty for PP, and for PPS, PSA and repositioning, which answer questions of TA.
         """
         return _DECLARED[self].decisions
 

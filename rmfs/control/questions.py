@@ -14,9 +14,9 @@ class Question(NamedTuple):
     Attributes
     ----------
     kind
-        `turn` asks for the next decision of a problem. All other kinds are questions that TA asks:
-        PPS is asked for a `pick pod`, a `replenishment pod` or the `next station`, PSA for a
-        `place`, and repositioning for a `move`.
+        `turn` asks for the next decision on a problem. All other kinds are questions of TA to
+        another problem: to PPS (`pick pod`, `replenishment pod` or `next station`), to PSA
+        (`place`), or to repositioning (`move`).
     robot
         The robot for which TA asks; -1 if the kind is `turn`.
     stations

@@ -2,8 +2,8 @@
 
 Controllers come from three sources:
 
-- the tables below, which contain references to classes instead of the classes, so that nothing of
-  `rmfs.solvers` is imported here;
+- `rmfs` itself: the tables of this module refer to the classes by strings, so that this module
+  does not import `rmfs.solvers`;
 - other installed packages, by entry points named `PROBLEM.NAME` in the group `rmfs.controllers`;
 - classes that a controllers file names as `module:Class` or `path/to/file.py:Class`.
 """
@@ -158,12 +158,12 @@ def names(problem: Problem) -> list[str]:
 
 
 def built_in(problem: Problem) -> list[str]:
-    """Return the names of the rules in `rmfs.control` for a problem."""
+    """Return the names of a problem's controllers in `rmfs.control`."""
     return list(_BUILT_IN[problem])
 
 
 def solver_backed(problem: Problem) -> list[str]:
-    """Return the names of a problem's controllers in `rmfs.solvers`, which ask optimisers."""
+    """Return the names of a problem's controllers in `rmfs.solvers`; they all ask optimisers."""
     return list(_SOLVER_BACKED.get(problem, ()))
 
 
@@ -178,8 +178,8 @@ def find(problem: Problem, name: str) -> type[Controller[Any]]:
     Raises
     ------
     InputError
-        If there is no such controller, or it cannot be imported, lacks a method or solves another
-        problem.
+        If there is no such controller, or if its class cannot be imported, lacks a method or is for
+        another problem.
     """
     shipped = _BUILT_IN[problem] | _SOLVER_BACKED.get(problem, {})
     reference = shipped.get(name) or _installed(problem).get(name)

@@ -1,4 +1,4 @@
-"""Shared parts of rollout rules, which try out decisions by simulation before making one."""
+"""Shared parts of rollout rules, which compare decisions by simulation before they choose one."""
 
 from __future__ import annotations
 
@@ -32,22 +32,25 @@ class RolloutParameters(Parameters):
     """Parameters of rollout rules."""
 
     base: Table = pydantic.Field(default_factory=dict)
-    """The rule that makes the default decision and, in trials, all decisions after the one tried; a
-    table of a controllers file. By default, it is the default rule of the problem."""
+    """Base rule, given as a table of a controllers file. It makes the default decision and, in a
+    trial, all decisions after the one that is tried. Without a `name`, it is the default rule of
+    the problem."""
     candidates: AtLeastOne = 4
-    """Maximum number of decisions compared, including the decision of the base rule."""
+    """Maximum number of decisions that are compared, including the decision of the base rule."""
     samples: AtLeastOne = 4
-    """Maximum number of futures in which each decision is tried."""
+    """Maximum number of randomly drawn futures in which each decision is tried."""
     horizon_s: Positive = 180.0
     """Simulated duration of a trial in seconds."""
     instants: AtLeastOne = 100_000
-    """Budget of each comparison: once its trials have simulated this many instants (times at which
-    something happens) in total, no further future is tried."""
+    """Limit on the effort of each comparison: once its trials have simulated this many instants
+    (times at which something happens) in total, no further future is tried."""
     certainty: Annotated[float, pydantic.Field(ge=0)] = 1.0
-    """Another decision replaces that of the base rule only if its mean advantage exceeds this many
-    standard errors."""
+    """Required certainty: another decision replaces that of the base rule only if its mean
+    advantage in the trials, divided by the standard error of this mean, exceeds this number."""
     goal: Goal = Goal()
-    """Weights of the amounts that make up the value of a trial."""
+    """Weights that define the value of a trial: rewards for `units` picked, `orders` completed and
+    `units_stored`, and costs of seconds for which orders are overdue (`overdue_s`) and of metres
+    driven (`distance_m`)."""
 
 
 class TriesOut:
@@ -58,7 +61,8 @@ class TriesOut:
     Attributes
     ----------
     base
-        The rule that makes the default decision and, in trials, all decisions after the one tried.
+        The base rule. It makes the default decision. In a trial, which simulates the effects of one
+        decision, it makes all later decisions on the problem.
     """
 
     looks_ahead: ClassVar[bool] = True
@@ -72,11 +76,11 @@ class TriesOut:
         self.base.hear(trigger, subject)
 
     def next_event_s(self) -> float:
-        """Return the simulated time, in s, by which the base rule must be asked again."""
+        """Return the simulated time, in s, at which the base rule must be called next; or inf."""
         return float(self.base.next_event_s())
 
     def best(self, call: Call) -> Iterator[Any]:
-        """Yield the decision that was chosen by trials, if it is still possible."""
+        """Yield the decision that the trials have selected, if it is still possible."""
         rows = [] if call.solution is None else [call.solution["row"]]
         for row in call.left("best", rows):
             chosen = call.ask.memo[row]
@@ -94,8 +98,8 @@ def base_rule(
     Raises
     ------
     InputError
-        If there is no such rule, its parameters are invalid, or the rule asks optimisers, is a
-        dummy or decides further problems.
+        If there is no such rule, its parameters are invalid, or it cannot be a base rule because it
+        asks optimisers, is a dummy (`is_dummy`) or decides further problems.
     """
     choice = choose(problem, parameters.base, f"{problem}.base")
     rule = choice.controller
@@ -113,9 +117,9 @@ def question(
     decisions: Sequence[Any],
     parameters: RolloutParameters,
 ) -> Ask[Comparison]:
-    """Return a question that asks which of the decisions is best.
+    """Return a request to compare decisions by trials and to choose the best one.
 
-    The first of `decisions` must be that of the base rule.
+    The first of `decisions` must be the decision of the base rule.
     """
     view = controller.view
     trials = controller.lookahead(

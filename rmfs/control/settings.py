@@ -73,14 +73,14 @@ class _File(RuleTables):
 def load(
     name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
 ) -> ControllerSettings:
-    """Load a controllers file; `load_with_notes` describes arguments and errors."""
+    """Load a controllers file; arguments and errors are those of `load_with_notes`."""
     return load_with_notes(name_or_path, overrides)[0]
 
 
 def load_with_notes(
     name_or_path: str | Path, overrides: Sequence[tuple[list[str], Any]] = ()
 ) -> tuple[ControllerSettings, list[str]]:
-    """Load a controllers file; also return notes if it was imported from RAWSim-O.
+    """Load a controllers file, and return it with notes on the import if it is from RAWSim-O.
 
     Parameters
     ----------
@@ -93,13 +93,14 @@ def load_with_notes(
 
     Returns
     -------
-    The controllers, and notes on what an import has left out and what differs from RAWSim-O.
+    The controllers, and the notes: what the import has left out, and what differs from RAWSim-O.
+    There are no notes on other files.
 
     Raises
     ------
     InputError
-        If there is no such file or set, or the contents are invalid; the message then names the
-        key and what would be valid.
+        If there is no such file or set, or if its contents are invalid. For invalid contents, the
+        message names the key and what would be valid.
     """
     path = instances.locate("controllers", str(name_or_path))
     if path.suffix.lower() == ".xconf":
@@ -123,10 +124,12 @@ def _anchor(table: Table, folder: Path) -> None:
 def settings(
     table: Table, overrides: Sequence[tuple[list[str], Any]] = (), source: str = "controllers"
 ) -> ControllerSettings:
-    """Validate the contents of a controllers file.
+    """Validate the contents of a controllers file, and return the controllers that it selects.
 
     Parameters
     ----------
+    table
+        The contents.
     overrides
         As in `load_with_notes`.
     source

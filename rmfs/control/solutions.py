@@ -21,14 +21,14 @@ def to_text(solution: Mapping[str, Plain]) -> str:
     Raises
     ------
     TypeError
-        If the solution contains anything other than JSON values, tuples, and NumPy arrays or
-        scalars of real numbers, truth values or strings.
+        If the solution contains a value of a type that is not supported. Supported are JSON values,
+        tuples, and NumPy arrays and scalars that consist of real numbers, truth values or strings.
     """
     return json.dumps({str(name): value for name, value in solution.items()}, default=_plain)
 
 
 def from_text(text: str) -> dict[str, Any]:
-    """Return the solution that `to_text` has written as `text`.
+    """Restore a solution from the text that `to_text` has returned.
 
     Tuples are returned as lists, and NumPy scalars as Python values.
     """

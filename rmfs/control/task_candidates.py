@@ -26,7 +26,7 @@ _KIND_OF: dict[type, int] = {WorkFor: WORK, Store: STORE, MovePod: MOVE, Rest: R
 
 
 FEATURES = ("work", "pick", "store", "move", "rest", "away_s", "units", "robots")
-"""What rates a task: its kind as four numbers, 1 or 0, and columns of `tasks`."""
+"""Features by which a task is rated: its kind as four numbers, 1 or 0, and columns of `tasks`."""
 
 _OF_OTHERS: dict[int, tuple[float, ...]] = {
     STORE: (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0),
@@ -39,15 +39,15 @@ _OF_OTHERS: dict[int, tuple[float, ...]] = {
 class TaskCandidates(Candidates):
     """The possible tasks of some robots.
 
-    Most questions have few rows, and their columns are rarely needed, so these are created only
-    when they are accessed.
+    The columns are rarely needed, so they are created only when they are accessed.
 
     Parameters
     ----------
     robots
         The robots.
     rows
-        The tasks: position of the robot in `robots`, kind, and station or -1.
+        For each task, the index of the robot in `robots`, the kind of task, and the station (-1 if
+        the task is not work for a station).
     """
 
     def __init__(
@@ -83,12 +83,12 @@ class TaskCandidates(Candidates):
         return columns
 
     def without_moves(self) -> list[int] | None:
-        """Return the rows that do not move an idle pod; None if these are all rows."""
+        """Return the rows except those that move an idle pod; None if there are no such moves."""
         rows = [row for row, (_, kind, _) in enumerate(self._rows) if kind != MOVE]
         return rows if len(rows) < len(self._rows) else None
 
     def features(self, rows: Iterable[int] | None = None) -> NDArray[np.float64]:
-        """Return `FEATURES` of some rows (default: all), shape (8, C)."""
+        """Return the 8 `FEATURES` of C rows (default: all rows), shape (8, C)."""
         chosen = self._rows if rows is None else [self._rows[row] for row in rows]
         if not chosen:
             return np.empty((len(FEATURES), 0))
@@ -118,7 +118,7 @@ def tasks(
     Parameters
     ----------
     refused
-        Earlier decisions that could not be carried out; they are left out.
+        Earlier decisions that could not be carried out; their tasks are left out.
     robots
         The robots whose tasks are listed. Default: all that need a task or are at rest.
     """
@@ -134,7 +134,8 @@ def tasks(
 def lacks_tasks(view: View) -> bool:
     """Return whether TA has nothing to decide, except perhaps which idle pods to move.
 
-    This is so if no robot needs a task, and none at rest could work for a station or store its pod.
+    This is the case if no robot needs a task, and no robot at rest could work for a station or
+    store its pod.
     """
     if view.asking:
         return False
@@ -146,8 +147,8 @@ def lacks_tasks(view: View) -> bool:
 def open_work(view: View, station: int) -> int:
     """Return the amount of a station's open work, that is, work for which no pod is under way.
 
-    For a pick station, it is the number of units that its open orders need and that are not bound
-    to a pod; for a replenishment station, the number of pods for which bundles wait.
+    For a pick station, this is the number of units that its open orders need and that are not yet
+    bound to a pod. For a replenishment station, it is the number of pods for which bundles wait.
     """
     target = view.stations[station]
     return target.requests.units if isinstance(target, PickStation) else len(target.waiting)

@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 def to_toml(settings: ControllerSettings) -> str:
-    """Return a set of controllers, with defaults, as TOML text; reading it gives an equal set."""
+    """Return a set of controllers as TOML text, including default values of parameters.
+
+    Reading the text gives an equal set.
+    """
     head = [f'format = "{FORMAT}"', f"name = {_value(settings.name)}"]
     if settings.description:
         head.append(f"description = {_value(settings.description)}")

@@ -22,45 +22,51 @@ Metric = Literal["euclidean", "manhattan", "path", "time"]
 
 
 class TravelTimes(Protocol):
-    """The part of the traffic model that knows travel times.
+    """The part of the traffic model that `Travel` needs.
 
-    Travel times depend on the kind of robot: they are those of the kind to which robot number
-    `robot` belongs (default: 0).
+    Travel times depend on the kind of robot: those of the kind of robot number `robot` (default: 0)
+    are returned.
     """
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = ...) -> NDArray[np.float64]:
-        """Return unhindered times from all waypoints to one, shape (N,), in s; inf: unreachable."""
+        """Return unhindered times from all waypoints to one, in s (inf: no path), shape (N,)."""
         ...
 
     def travel_times_from(
         self, waypoint: int, loaded: bool, robot: int = ...
     ) -> NDArray[np.float64]:
-        """Return unhindered times from one waypoint to all, shape (N,), in s; inf: unreachable."""
+        """Return unhindered times from one waypoint to all, in s (inf: no path), shape (N,)."""
         ...
 
     def robot_waypoint(self, robot: int) -> int:
-        """Return the next waypoint at which a robot will stop; without a plan, where it stands."""
+        """Return the waypoint where a robot stops next or, if it has no plan, where it stands."""
         ...
 
     def heat(self) -> dict[str, NDArray[Any]]:
-        """Return by name how often robots reached waypoints, and how long they stood there (s)."""
+        """Return statistics of the waypoints by name (`rmfs.traffic.readings.Readings.heat`).
+
+        Among them are `visits`, how often robots passed each waypoint or stopped there, and
+        `waiting_s`, how long they stood there.
+        """
         ...
 
 
 class TravelTables:
-    """Cached travel times and distances, shared by a run and its copies for trying out decisions.
+    """Cached travel times and distances.
+
+    A run shares them with the copies of the run in which decisions are tried out.
 
     Attributes
     ----------
     paths
         Lengths of shortest paths.
     distances
-        Distances from all waypoints to one, shape (N,). The key consists of this waypoint, the
-        metric, and whether the robot is loaded. For path lengths in the other direction, from
-        waypoint w to all others, the key contains ``~w`` instead of w.
+        Distances from all waypoints to one waypoint w, in m, shape (N,). The key consists of w, the
+        metric, and whether the robot is loaded. For path lengths in the other direction, from w to
+        all waypoints, the key contains ``~w`` instead of w.
     to, away
-        Travel times from all waypoints to one (`to`), or from one to all (`away`), shape (N,). The
-        key consists of the one waypoint and whether the robot is loaded.
+        Travel times from all waypoints to one waypoint w (`to`), or from w to all waypoints
+        (`away`), in s, shape (N,). The key consists of w and whether the robot is loaded.
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -75,8 +81,8 @@ class Travel:
 
     Travel times come from the traffic model. They are those of robot 0's kind, from standstill to
     standstill with the best initial heading. Times and distances between a waypoint and all others
-    are cached. Request them only for stations, of which there are few, and use `estimate_s` for
-    other waypoints.
+    are cached; request them only for stations, of which there are few. For other waypoints, use
+    `estimate_s`.
 
     Parameters
     ----------
@@ -108,16 +114,20 @@ class Travel:
         self._other_tier_m = 1 + max(tier.length_m + tier.width_m for tier in layout.tiers)
 
     def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
-        """Return unhindered times from all waypoints to one, shape (N,), in s; inf: no path."""
+        """Return unhindered times to this waypoint from all, in s (inf: no path), shape (N,).
+
+        `loaded` states whether the robot carries a pod.
+        """
         times = self.tables.to.get((waypoint, loaded))
         if times is None:
             times = self.tables.to[waypoint, loaded] = self._times.travel_times_to(waypoint, loaded)
         return times
 
     def away(self, waypoint: int, *, loaded: bool, keep: bool = True) -> NDArray[np.float64]:
-        """Return unhindered times from this waypoint to all, shape (N,), in s; inf: no path.
+        """Return unhindered times from this waypoint to all, in s (inf: no path), shape (N,).
 
-        With `keep=False`, the times are not cached; this is for callers that have their own cache.
+        `loaded` states whether the robot carries a pod. With `keep=False`, the times are not
+        cached; this is for callers that have a cache of their own.
         """
         times = self.tables.away.get((waypoint, loaded))
         if times is None:
@@ -129,9 +139,9 @@ class Travel:
     def distances_to(
         self, waypoint: int, metric: Metric, *, loaded: bool = True
     ) -> NDArray[np.float64]:
-        """Return distances from all waypoints to this one, shape (N,), in m; for `time`, in s.
+        """Return distances from all waypoints to this one, in m (metric `time`: in s), shape (N,).
 
-        `loaded` matters for the metrics `path` and `time` only.
+        `loaded` (whether the robot carries a pod) matters only for the metrics `path` and `time`.
         """
         if metric == "time":
             return self.to(waypoint, loaded=loaded)
@@ -142,10 +152,10 @@ class Travel:
     def distances_from(
         self, waypoint: int, metric: Metric, *, loaded: bool = True, keep: bool = True
     ) -> NDArray[np.float64]:
-        """Return distances from this waypoint to all, shape (N,), in m; for `time`, in s.
+        """Return distances from this waypoint to all, in m (metric `time`: in s), shape (N,).
 
-        With `keep=False`, travel times (metric `time`) are not cached. `loaded` matters for the
-        metrics `path` and `time` only.
+        With `keep=False`, travel times (metric `time`) are not cached. `loaded` (whether the robot
+        carries a pod) matters only for the metrics `path` and `time`.
         """
         if metric == "time":
             return self.away(waypoint, loaded=loaded, keep=keep)
@@ -162,10 +172,11 @@ class Travel:
         *,
         loaded: bool = True,
     ) -> NDArray[np.float64]:
-        """Return distances from a waypoint to others, shape (n,), in m; for `time`, in s.
+        """Return distances from a waypoint to n others, in m (metric `time`: in s), shape (n,).
 
-        Euclidean and Manhattan distances are recomputed at each call, which suits waypoints that
-        are rarely requested again. `loaded` matters for the metrics `path` and `time` only.
+        Euclidean and Manhattan distances are not cached, so call this method for waypoints that are
+        rarely requested again. `loaded` (whether the robot carries a pod) matters only for the
+        metrics `path` and `time`.
         """
         if metric == "euclidean":
             return self.metres(waypoint, others)
@@ -198,7 +209,7 @@ class Travel:
     def manhattan_metres(
         self, waypoint: int | _Waypoints, others: _Waypoints
     ) -> NDArray[np.float64]:
-        """Return Manhattan distances between waypoints, in m, with a surcharge between tiers.
+        """Return Manhattan distances to n other waypoints, in m, with a surcharge between tiers.
 
         The shape is (n,), or (m, n) if `waypoint` is an array of shape (m, 1).
         """
@@ -211,16 +222,17 @@ class Travel:
     def estimate_s(self, waypoint: int | _Waypoints, others: _Waypoints) -> NDArray[np.float64]:
         """Estimate travel times to other waypoints, in s, from Manhattan distances.
 
-        The estimate is the time for the distance at top speed plus the time for a quarter turn. The
-        speed is the lowest, and the time for turning the longest, of all kinds of robot. Waypoints
-        on other tiers get a surcharge.
+        The estimate is the time for the distance at top speed plus the time for a quarter turn. If
+        there are several kinds of robot, the lowest top speed and the longest turning time are
+        used. Waypoints on other tiers get a surcharge.
 
         Parameters
         ----------
         waypoint
-            One waypoint, m waypoints, shape (m, 1), or one for each of `others`, shape (n,).
+            Where the trips start: a single waypoint; m waypoints, shape (m, 1); or one for each of
+            `others`, shape (n,).
         others
-            Waypoints, shape (n,).
+            Where the trips end, shape (n,).
 
         Returns
         -------
@@ -233,7 +245,7 @@ class Travel:
         return seconds
 
     def one_estimate_s(self, waypoint: int, other: int) -> float:
-        """Return `estimate_s` for a single pair of waypoints, faster."""
+        """Return what `estimate_s` returns, but faster, for a single pair of waypoints."""
         x, y, tier = self._x.item, self._y.item, self.tier.item
         metres = abs(x(other) - x(waypoint)) + abs(y(other) - y(waypoint))
         if self.tiers > 1 and tier(other) != tier(waypoint):
@@ -241,7 +253,10 @@ class Travel:
         return metres * self._seconds_per_metre + self._quarter_turn_s
 
     def metres(self, waypoint: int, others: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
-        """Return Euclidean distances in m to others, shape (n,), with a surcharge between tiers."""
+        """Return Euclidean distances from a waypoint to n others, in m, shape (n,).
+
+        Waypoints on other tiers get a surcharge.
+        """
         x, y = self._x[others] - self._x[waypoint], self._y[others] - self._y[waypoint]
         distance: NDArray[np.float64] = np.sqrt(
             x * x + y * y
@@ -251,14 +266,15 @@ class Travel:
         return distance
 
     def robot_waypoint(self, robot: int) -> int:
-        """Return the next waypoint at which a robot will stop; without a plan, where it stands."""
+        """Return the waypoint where a robot stops next or, if it has no plan, where it stands."""
         return self._times.robot_waypoint(robot)
 
     def passages(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Return how often robots passed each waypoint, and how long they stood there, in s, (N,).
+        """Return how often robots passed each waypoint or stopped there, and how long they stood.
 
-        Robots without a destination, and pods at stations, do not count. Counts start at time zero
-        and again at the end of the warm-up.
+        Both arrays have shape (N,); the times are in s and include service at stations. Times of
+        robots without a destination, and times for lifting and setting down pods, are left out.
+        Counts start at time zero, and again from 0 at the end of the warm-up.
         """
         counted = self._times.heat()
         return counted["visits"], counted["waiting_s"]

@@ -34,21 +34,22 @@ class View:
     layout, skus
         The warehouse and the SKUs.
     inventory
-        Stock: units contained and available, and space promised (`rmfs.world.inventory`).
+        The stock on pods: contained and available units, and the space reserved for bundles
+        (`rmfs.world.inventory`).
     storage
         Where pods are stored, and which pods and storage locations robots have reserved
         (`rmfs.world.storage`).
     orders, bundles
         The backlogs of orders and of bundles (`rmfs.world.backlog`).
     pick_stations, replenishment_stations, stations
-        Pick stations, replenishment stations, and both kinds, pick stations first
+        The pick stations, the replenishment stations, and both together, pick stations first
         (`rmfs.world.stations`).
     all_stations
         All stations, including those of other kinds, which come last.
     slot_news, work_news
-        Notifications (`rmfs.world.news`). `slot_news` tells which pick stations were switched on or
-        off, were reached or left by a robot, or gained or lost an order; `work_news` tells which
-        stations gained open work or may have none left.
+        Notifications (`rmfs.world.news`). `slot_news` reports pick stations that were switched on
+        or off, that a robot reached or left, or that gained or lost an order. `work_news` reports
+        stations that gained open work or may have none left.
     need
         Open units per pick station and SKU, shape (S, K): units that the station's open orders need
         and that are not bound to a pod.
@@ -63,9 +64,10 @@ class View:
     robots
         All robots, in order of index.
     asking, resting
-        Robots by index: those that need a task, and those at rest or on their way to rest.
+        The robots that need a task, by index; and the robots that are at rest or on their way to
+        rest, by index.
     queued_need
-        The same as `need`, for the orders in the stations' pools instead of the open orders.
+        The same as `need`, but for the orders in the stations' pools instead of the open orders.
     travel
         Travel times and distances.
     end_s
@@ -133,8 +135,8 @@ class View:
     def unit_s(self, station: int) -> float:
         """Return the mean time per unit at a pick station, in s, at its picker's present speed.
 
-        The additional time for layers and faces of a pod and for picking errors is not included.
-        Without a picker, the time is the one given by the layout.
+        The additional time for layers and faces of a pod and for picking errors is not included. If
+        the station has no picker, the result is the time per unit that the layout specifies.
         """
         staff = self._world.staff
         if staff is None or staff.at_station[station] is None:
@@ -163,15 +165,18 @@ class View:
         return self._draw_past_orders()
 
     def pod_waypoint(self, pod: int) -> int:
-        """Return where a pod is stored; if it is carried, where its robot stands or next stops."""
+        """Return the waypoint of a stored pod or, for a carried pod, that of its robot.
+
+        The waypoint of a robot is the next one at which it stops (`Travel.robot_waypoint`).
+        """
         place = self.storage.place_of[pod]
         return place if place >= 0 else self.travel.robot_waypoint(self.storage.claimed_by[pod])
 
     def work_version(self, station: int) -> tuple[int, ...]:
         """Return the version of a station's work.
 
-        It changes when work is added or a pod becomes available: if no pod was found for a station,
-        none will be found until the version has changed.
+        The version changes when work is added or a pod becomes available. If no pod was found for a
+        station, another search is useless until the version has changed.
         """
         return self.storage.version, *self.all_stations[station].work_version
 
@@ -180,7 +185,7 @@ class View:
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:
-        """Return the waypoint of the pod that a robot fetches, or `robot.waypoint` if none."""
+        """Return the waypoint of the pod that a robot fetches; if none, `robot.waypoint`."""
         task = robot.task
         if task is None or task.pod < 0 or robot.pod >= 0:
             return robot.waypoint

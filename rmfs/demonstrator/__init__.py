@@ -1,4 +1,4 @@
-"""Physical or emulated robots in place of simulated ones (Merschformann, Xie and Li 2018).
+"""Physical or emulated robots in place of simulated ones.
 
-Section 4 of their paper describes the demonstrator of RAWSim-O.
+Merschformann, Xie and Li (2018, section 4) describe the corresponding demonstrator of RAWSim-O.
 """

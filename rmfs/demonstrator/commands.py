@@ -1,7 +1,7 @@
 """`rmfs demonstrate` and `rmfs emulate`.
 
-The command line prints an `InputError` as one line and exits with code 2; these functions just
-raise it.
+If an input is wrong, these functions raise `InputError`; the command line then prints the error as
+one line and exits with code 2.
 """
 
 from __future__ import annotations
@@ -114,9 +114,9 @@ def demonstrate(
 ) -> None:
     """Run a warehouse with real robots, or emulated ones, and write a run folder.
 
-    If the command is killed, run it again with the same arguments to resume the demonstration.
-    With `--robots emulated`, the demonstration then starts from the beginning; the result is the
-    same as without the interruption.
+    If the command is killed, run it again with the same arguments: the demonstration continues
+    where it stopped. With `--robots emulated`, it starts again from the beginning instead, and the
+    result is the same as without the interruption.
     """
     from rmfs.cli.simulate import conclude, default_name
     from rmfs.cli.terminal import progress, step
@@ -288,7 +288,7 @@ def _hub(host: str, port: int, secret: bytes, names: list[str], given: str) -> H
 def _room_of_its_own(
     hub: Hub, secret: bytes, truth: Path, asked: list[str], *, is_wanted: bool
 ) -> Iterator[None]:
-    """Run an emulated room in a process of its own meanwhile."""
+    """Run an emulated room in a separate process for the duration of the context, if wanted."""
     if not is_wanted:
         yield
         return

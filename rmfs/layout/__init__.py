@@ -1,4 +1,4 @@
-"""The layout of a warehouse: waypoints, stations, pods and robots before anything happens.
+"""The layout of a warehouse: waypoints, stations, and pods and robots at the start of a run.
 
 `load` reads every kind of layout file, `generate` makes a default layout from parameters, `check`
 returns the violations of a layout, and `draw` draws a layout.

@@ -1,7 +1,8 @@
 """The colours of warehouse elements, the same in all figures and in the viewer.
 
-They follow the usual names (pick stations red, replenishment stations yellow, robots green, storage
-blue) in the palette of Okabe and Ito, which is safe for common kinds of colour blindness.
+They follow the usual convention: pick stations are red, replenishment stations yellow, robots green
+and storage locations blue. Most colours are from the palette of Okabe and Ito, which people with
+common kinds of colour blindness can distinguish.
 """
 
 PICK_STATION = "#D55E00"

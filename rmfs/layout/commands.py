@@ -1,7 +1,7 @@
 """`rmfs layout`: new, list, show, check, import, convert.
 
-If the input is wrong, these functions raise `InputError`; the command line prints its message as
-one line and exits with code 2.
+If the input is wrong, these functions raise `InputError`; the command line prints the message of
+the error as one line and exits with code 2.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Compressed sparse rows for the waypoint graph."""
+"""The edges of the waypoint graph as compressed sparse rows (CSR)."""
 
 from __future__ import annotations
 
@@ -25,6 +25,6 @@ def compressed(
 
 
 def edge_sources(layout: Layout) -> NDArray[np.int32]:
-    """Return the tail of each directed edge, aligned with `edge_target`, shape (M,)."""
+    """Return the tail of each directed edge, in the order of `Layout.edge_target`, shape (M,)."""
     degrees = np.diff(layout.edge_start)
     return np.repeat(np.arange(layout.waypoints, dtype=np.int32), degrees)

@@ -1,11 +1,11 @@
-"""Kinds of station, each with all that is particular to it, from parameters to viewer colour.
+"""Kinds of station: classes with everything that distinguishes one kind from the others.
 
-A kind is one class that names its parts, each by class or by reference (`module:Class`). References
-are used so that a layout, which holds the kinds of its stations, can be read without importing the
-modules that simulate. Pick and replenishment stations are kinds like any other. Other kinds are
-named in layout files by `module:Class`, by `path/to/file.py:Class`, or by a registered name:
-`charger`, `swap`, or a name that an installed Python package registers in the entry-point group
-`rmfs.stations`.
+The attributes of a kind include its parts, such as its service and its controller. Each part is
+given as a class or as a reference to a class (`module:Class`). References allow a layout, which
+contains the kinds of its stations, to be read without importing the simulation modules. Pick and
+replenishment stations are kinds like any other. Layout files name all other kinds by
+`module:Class`, by `path/to/file.py:Class`, or by a registered name: `charger`, `swap`, or a name
+that an installed Python package registers in the entry-point group `rmfs.stations`.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ T = TypeVar("T")
 
 
 class NoParameters(Model):
-    """Empty model, for kinds of station without parameters."""
+    """Model of the parameters of station kinds that have none."""
 
 
 class StationKind:
-    """Base class of kinds of station: derive a class, name its parts, and refer to it in a layout.
+    """Base class of kinds of station; a derived class sets the attributes below.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class StationKind:
     handles
         What the viewer counts at the stations, such as `units picked`.
     parameters_model
-        Model of the parameters.
+        Pydantic model that validates the parameters.
     task
         Class of the tasks that bring robots to the stations; for kinds other than pick and
         replenishment, a subclass of `VisitTask`.
@@ -72,8 +72,8 @@ class StationKind:
         Class of the controller that decides which pod visits a station and when, a subclass of
         `VisitController`; None if the controllers of the decision problems decide this.
     measures
-        Classes of measures; the footprint contains their columns if the layout has stations of the
-        kind.
+        Classes of measures. If the layout has stations of the kind, the columns of these measures
+        are part of the footprint.
     """
 
     name: ClassVar[str]
@@ -93,14 +93,14 @@ class StationKind:
     def digested(self) -> tuple[object, ...]:
         """Return what identifies the kind: name, SHA-256 of each source file, and parameters.
 
-        Source files of rmfs itself are left out.
+        Source files that belong to rmfs are left out.
         """
         files = sources([type(self)]).values()
         written = sorted(hashlib.sha256(path.read_bytes()).hexdigest() for path in files)
         return self.name, written, self.parameters.model_dump(mode="json")
 
     def part(self, name: str, base: type[T]) -> type[T]:
-        """Return the class of a part, such as `service`; the class must be derived from `base`.
+        """Return the class of a part, such as `service`, and check that it is derived from `base`.
 
         Raises
         ------
@@ -110,12 +110,12 @@ class StationKind:
         return resolve(getattr(self, name), base, f"{name} of {self.name} stations")
 
     def busy_s(self, station: Any) -> float:
-        """Return the time in s for which a unit or bundle occupies a station; 0 if it varies."""
+        """Return the time in s for which one unit or bundle occupies a station; 0 if not fixed."""
         return 0.0
 
 
 class PickKind(StationKind):
-    """The kind of pick stations, where units go from pods into orders."""
+    """The kind of pick stations, where units are picked from pods for orders."""
 
     name = "pick"
     letter = "P"
@@ -126,12 +126,12 @@ class PickKind(StationKind):
     service = "rmfs.simulation.service:PickService"
 
     def busy_s(self, station: Any) -> float:
-        """Return the time in s for which a unit occupies a station."""
+        """Return the time in s for which one unit occupies a station."""
         return float(station.unit_transfer_s)
 
 
 class ReplenishmentKind(StationKind):
-    """The kind of replenishment stations, where bundles go into pods."""
+    """The kind of replenishment stations, where bundles are put into pods."""
 
     name = "replenishment"
     letter = "R"
@@ -142,7 +142,7 @@ class ReplenishmentKind(StationKind):
     service = "rmfs.simulation.service:ReplenishmentService"
 
     def busy_s(self, station: Any) -> float:
-        """Return the time in s for which a bundle occupies a station."""
+        """Return the time in s for which one bundle occupies a station."""
         return float(station.bundle_transfer_s)
 
 
@@ -155,7 +155,8 @@ TASK_COLOURS = {
     "reposition": "#CC79A7",
     "rest": "#999999",
 }
-"""Colours of robots by task; a robot bound for a station of another kind has that kind's colour."""
+"""Colours of robots by task. A robot on its way to a station of any other kind has the colour of
+that kind."""
 
 _SHIPPED = {
     "charger": "rmfs.layout.charging:Charger",
@@ -167,7 +168,7 @@ _RESERVED = ("pick", "replenish", "replenishment", "elevator", "park", "repositi
 
 
 def find(reference: str) -> type[StationKind]:
-    """Find the class of a kind of station.
+    """Return the class of a kind of station, given a registered name or a reference to the class.
 
     Raises
     ------
@@ -198,16 +199,16 @@ def station_kind(
     name
         Name of the kind, which is the key of its table below `other_stations`.
     reference
-        Reference to its class, as in the layout file.
+        Reference to the class of the kind, or its registered name, as in the layout file.
     folder
-        Folder that is searched, before the working directory, for a file named in `reference`.
-        Default: only the working directory.
+        Folder in which a file named in `reference` is looked for first; the working directory is
+        searched next. Default: only the working directory is searched.
 
     Raises
     ------
     InputError
-        If there is no such kind, `name` is reserved or differs from the attribute `name` of the
-        class, the class has no letter or colour, or a parameter is wrong.
+        If there is no such kind, if `name` is reserved or differs from the attribute `name` of the
+        class, if the class has no letter or colour, or if a parameter is invalid.
     """
     key = f"other_stations.{name}"
     try:
@@ -228,7 +229,7 @@ def station_kind(
 
 
 def described(kind: StationKind) -> dict[str, Any]:
-    """Return the entry of a kind in a layout file, without its stations."""
+    """Return the entry of a kind in a layout file: a reference to its class, and its parameters."""
     return {
         "kind": reference_of(type(kind)),
         "parameters": kind.parameters.model_dump(mode="json"),

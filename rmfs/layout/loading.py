@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 Override = tuple[list[str], Any]
-"""The path of a key below "layout", and its new value."""
+"""A key below "layout", as a list of its parts, and its new value."""
 
 
 def names() -> list[str]:
@@ -30,32 +30,33 @@ def names() -> list[str]:
 
 
 def load(name_or_path: str | Path, overrides: Sequence[Override] = ()) -> Layout:
-    """Load a layout; see `load_with_notes`."""
+    """Load a layout; like `load_with_notes`, but without the notes."""
     return load_with_notes(name_or_path, overrides)[0]
 
 
 def load_with_notes(
     name_or_path: str | Path, overrides: Sequence[Override] = ()
 ) -> tuple[Layout, list[str]]:
-    """Load a layout, with notes from its import.
+    """Load a layout, and return it with notes on its import.
 
     Parameters
     ----------
     name_or_path
         A shipped layout, or a file: `.toml` (parameters), `.json` (explicit layout), `.txt` (drawn
         as text), `.xlayo` or `.xinst` (RAWSim-O), or `.map` (grid map). The stations and storage
-        locations of `NAME.map` are read from `NAME.map.toml` beside it; without that file, the
-        layout has none and serves for traffic experiments.
+        locations of `NAME.map` are read from `NAME.map.toml` in the same folder. Without that file,
+        the layout has no stations or storage locations, and can be used only for traffic
+        experiments.
     overrides
-        Pairs of a key, as a list of its parts, and its new value, such as `(["robots"], 16)`. For
-        `.toml`, `.xlayo`, `.txt`, and `.map` with stations, a key is either one of the parameters
-        from which the layout is made, which are validated only after the change, or one of
-        `FACTORS`, which are applied to the finished layout. For all other files, it is one of the
-        keys of `ExplicitOverrides`.
+        Pairs of a key, as a list of its parts, and its new value, such as `(["robots"], 16)`. The
+        valid keys depend on the file. For `.toml`, `.xlayo`, `.txt`, and `.map` with stations, they
+        are the parameters in the file, which are changed before they are validated, and
+        `FACTORS`, which are applied to the finished layout. For all other files, they are the keys
+        of `ExplicitOverrides`.
 
     Returns
     -------
-    The layout, and notes on what an import left out or added.
+    The layout, and notes on what was left out or added when it was imported.
 
     Raises
     ------
@@ -101,7 +102,7 @@ def _generated(table: Table, overrides: Sequence[Override], path: Path) -> Layou
 
 
 def split_factors(overrides: Sequence[Override]) -> tuple[list[Override], list[Override]]:
-    """Split overrides into those of parameters and those in `FACTORS`, which are applied last."""
+    """Split overrides into those of parameters and those of `FACTORS`, and return both lists."""
     is_factor = [path[0] in FACTORS for path, _ in overrides]
     pairs = list(zip(overrides, is_factor, strict=True))
     return [one for one, late in pairs if not late], [one for one, late in pairs if late]

@@ -1,8 +1,8 @@
-"""Grid maps from path-finding benchmarks (Stern et al. 2019: `.map`) as layouts.
+"""Layouts from grid maps of path-finding benchmarks (`.map` files; Stern et al. 2019).
 
 Each free cell becomes a waypoint; two-way lanes of one metre connect it to the free cells on its
-four sides. Layouts made here have no pods and no stations: robots drive from point to point. Cells
-are counted as in the files, row by row from the top left; in the layout, y grows upwards.
+four sides. Layouts made here have no pods and no stations: robots drive from point to point. As in
+the files, cells are numbered row by row from the top left; in the layout, y grows upwards.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 BLOCKED = "@OTW"
-"""Signs of cells that cannot be entered; all others (`.`, `G`, `S`, `E`) are free."""
+"""Characters of cells that cannot be entered; cells with other characters (`.`, `G`, `S`, `E`) are
+free."""
 
 MOST_CELLS = 1_200_000
 """Maximum number of cells of a map; the largest published ones have 1024 x 1024."""
@@ -34,13 +35,13 @@ KIND = RobotKind(0.35, 1.0, 1.0, 1.5, 2.5, 2.2)
 
 
 def read_map(path: Path, robots: list[int] | None = None) -> Layout:
-    """Read a `.map` file.
+    """Return the layout that a `.map` file defines.
 
     Parameters
     ----------
     robots
-        Numbers of the cells (row times width plus column) where robots stand. Default: the first
-        free cell of each of the first ten rows that have one.
+        Numbers of the cells (row times width plus column) in which the robots start. Default: the
+        first free cell of each of the first ten rows that have a free cell.
 
     Raises
     ------
@@ -95,14 +96,19 @@ def _edges(number: NDArray[np.int64]) -> tuple[NDArray[np.int32], NDArray[np.int
 
 
 def read_cells(path: Path) -> NDArray[np.int64]:
-    """Return the waypoint of each cell of a map, -1 for blocked cells, shape (H, W)."""
+    """Return the waypoint of each cell of a map, -1 for blocked cells, shape (rows, columns)."""
     return cell_waypoints(_free(path))
 
 
 def cell_waypoints(free: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Return the waypoint of each cell, -1 for blocked cells, shape (H, W).
+    """Return the waypoint of each cell, -1 for blocked cells, shape (rows, columns).
 
     Waypoints are numbered row by row.
+
+    Parameters
+    ----------
+    free
+        Whether each cell is free, shape (rows, columns).
     """
     number = np.full(free.shape, -1, np.int64)
     number[free] = np.arange(free.sum())
@@ -115,11 +121,11 @@ def waypoint_at(number: NDArray[np.int64], cell: int, source: str) -> int:
     Parameters
     ----------
     number
-        Waypoint of each cell, -1 for blocked cells, shape (H, W).
+        Waypoint of each cell, -1 for blocked cells, shape (rows, columns).
     cell
         Number of the cell: row times width plus column.
     source
-        Name of the file, for messages.
+        Name of the file, for error messages.
 
     Raises
     ------
@@ -132,7 +138,7 @@ def waypoint_at(number: NDArray[np.int64], cell: int, source: str) -> int:
 
 
 def read_rows(path: Path) -> list[str]:
-    """Return the rows of a map as strings with one character per cell, the top row first.
+    """Return the rows of a map file as strings with one character per cell, the top row first.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """The layout: arrays of waypoints, pods and robots, and tuples of stations and elevators.
 
-All of them are identified by index. Stations share one numbering: pick stations come first, then
-replenishment stations, then those of all other kinds.
+Waypoints, pods, robots, stations and elevators are identified by their indices. All stations share
+one numbering: pick stations come first, then replenishment stations, then those of other kinds.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ class Tier:
 
 @dataclass(frozen=True, slots=True)
 class PickStation:
-    """A station where units are picked from pods into orders.
+    """A station where units are picked from pods for orders.
 
     Attributes
     ----------
     waypoint
-        Waypoint of the robot while its pod is served.
+        Waypoint at which a robot stands while its pod is served.
     queue
-        Waiting places: `queue[0] == waypoint`, and the entrance is last.
+        Waypoints of the queue: the first is `waypoint`, and the last is the entrance.
     order_slots
         Maximum number of open orders.
     unit_transfer_s
@@ -52,7 +52,8 @@ class PickStation:
     unit_pick_s
         Time for which one unit occupies the robot, in s.
     activation
-        Rank of the station, from 1, in the sequence in which stations of its kind are switched on.
+        Position of the station, from 1, in the order in which the stations of its kind are
+        activated.
     """
 
     kind: ClassVar[StationKind] = PICK
@@ -90,7 +91,7 @@ class ReplenishmentStation:
 
 @dataclass(frozen=True, slots=True)
 class OtherStation:
-    """A station neither for picking nor for replenishment; its kind defines its service."""
+    """A station of any other kind, which is neither for picking nor for replenishment."""
 
     kind: StationKind
     waypoint: int
@@ -107,9 +108,11 @@ class Elevator:
     waypoints
         Waypoints where robots board and leave, one on each tier that the elevator serves.
     travel_s
-        Duration of the ride in s, by origin and destination, which are two of these waypoints.
+        Duration of each ride in s. The keys are pairs of origin and destination, both from
+        `waypoints`.
     queues
-        Waiting places by boarding waypoint, nearest first; the first is the waypoint itself.
+        For each waypoint in `waypoints`, the waypoints at which robots wait for the elevator,
+        nearest first; the first is the boarding waypoint itself.
     """
 
     waypoints: tuple[int, ...]
@@ -124,9 +127,9 @@ class RobotKind:
     Attributes
     ----------
     full_turn_s
-        Seconds for a turn of 360 degrees on the spot.
+        Duration of a turn of 360 degrees on the spot, in s.
     pod_transfer_s
-        Seconds to lift or to set down a pod.
+        Duration of lifting or setting down a pod, in s.
     """
 
     radius_m: float
@@ -139,7 +142,7 @@ class RobotKind:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """A warehouse before a run.
+    """A warehouse in its state before a run.
 
     Attributes
     ----------
@@ -148,15 +151,15 @@ class Layout:
     tier
         Tier index of each waypoint, shape (N,).
     edge_start
-        CSR offsets, shape (N + 1,): the waypoints reached directly from v are
-        `edge_target[edge_start[v]:edge_start[v + 1]]`, ascending. Edges between tiers are not
-        here but in `elevators`.
+        Offsets into `edge_target` (compressed sparse rows, CSR), shape (N + 1,). The edges from
+        waypoint v lead to `edge_target[edge_start[v]:edge_start[v + 1]]`, in ascending order.
+        Elevator rides are not among these edges; they are in `elevators`.
     edge_target
-        Heads of the directed edges, shape (M,).
+        Heads of the M directed edges, shape (M,).
     is_storage
         Whether each waypoint is a storage location, shape (N,).
     is_queue
-        Whether each waypoint belongs to a queue zone, including the way out, shape (N,).
+        Whether each waypoint belongs to a queue zone (a queue or the path out of it), shape (N,).
     pod_waypoint
         Initial waypoint of each of the P pods, shape (P,).
     pod_capacity
@@ -166,9 +169,9 @@ class Layout:
     robot_waypoint
         Initial waypoint of each of the R robots, shape (R,).
     robot_heading_rad
-        Initial heading of each robot in rad, 0 = +x, growing towards +y, shape (R,).
+        Initial heading of each robot in rad, shape (R,): 0 is the direction +x, pi / 2 is +y.
     robot_kind
-        Index of the kind of each robot in `robot_kinds`, shape (R,).
+        Kind of each robot, as an index into `robot_kinds`, shape (R,).
     """
 
     name: str
@@ -194,7 +197,7 @@ class Layout:
 
     @property
     def stations(self) -> tuple[PickStation | ReplenishmentStation | OtherStation, ...]:
-        """All stations in the order of their common numbering: pick stations first."""
+        """All stations in order of their numbers: first pick, then replenishment, then others."""
         return (*self.pick_stations, *self.replenishment_stations, *self.other_stations)
 
     @property
@@ -218,7 +221,7 @@ class Layout:
         return len(self.robot_waypoint)
 
     def to_networkx(self) -> nx.DiGraph[int]:
-        """Return waypoints and edges as a graph of networkx; see `networkx_graph.to_networkx`."""
+        """Return waypoints and edges as a networkx graph; see `networkx_graph.to_networkx`."""
         from rmfs.layout.networkx_graph import to_networkx
 
         return to_networkx(self)

@@ -1,4 +1,4 @@
-"""Layouts as graphs of networkx, and measures that its algorithms compute."""
+"""Layouts as networkx graphs, and graph measures computed with networkx."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ def to_networkx(layout: Layout) -> nx.DiGraph[int]:
     """Return the waypoints and edges of a layout as a directed graph.
 
     Nodes are waypoint indices with the attributes `x_m`, `y_m`, `tier`, `storage`, `queue` and
-    `station` (index into `Layout.stations`, or -1). Edges have `length_m`; rides between tiers have
-    `elevator` (index) and `travel_s` instead.
+    `station` (index into `Layout.stations`, or -1). Edges have the attribute `length_m`. Elevator
+    rides are edges, too; they have the attributes `elevator` (index) and `travel_s` instead.
     """
     import networkx as nx
 
@@ -54,12 +54,12 @@ class GraphMeasures:
     Attributes
     ----------
     to_station_mean_m, to_station_max_m
-        Length in m of the shortest way from a storage location to the nearest pick station, mean
-        and maximum over the storage locations that have such a way; None if there are no such
-        locations. Ways may lead through any waypoint; elevator rides count as 0 m.
+        Mean and maximum length in m of the shortest path from a storage location to the nearest
+        pick station, over the storage locations that have such a path; None if none has one. Paths
+        may lead through any waypoint; elevator rides count as 0 m.
     bottlenecks
-        Number of articulation points of the undirected graph without queue zones: closing any
-        one of these waypoints would separate others that were connected.
+        Number of articulation points of the undirected graph without queue zones, that is, of
+        waypoints whose removal would disconnect other waypoints.
     """
 
     to_station_mean_m: float | None
@@ -68,7 +68,7 @@ class GraphMeasures:
 
 
 def measures(layout: Layout) -> GraphMeasures:
-    """Return the graph measures of a layout."""
+    """Compute the graph measures of a layout."""
     import networkx as nx
 
     graph = to_networkx(layout)

@@ -1,10 +1,10 @@
 """Overrides for explicit layouts, which are not generated from parameters.
 
 The aisles of an explicit layout cannot be lengthened, but its robots and stations can be changed.
-Keys that are also layout parameters mean the same as these parameters. The other keys are `FACTORS`
-(the shares of pick and replenishment stations that are kept, and the number of robots per pick
-station); they are meant as factors of experiments and also apply to layouts that are generated or
-drawn as text, and to grid maps with stations.
+Most keys are also layout parameters and have the same meaning. The others are `FACTORS`: the shares
+of pick and replenishment stations that are kept, and the number of robots per pick station. They
+are intended as factors of experiments. They can also be used for generated layouts, layouts drawn
+as text, and grid maps with stations.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ RAWSim-O."""
 
 
 class ExplicitOverrides(Strict):
-    """The values that can be overridden in an explicit layout; None leaves a value as it is."""
+    """The values that can be overridden in an explicit layout; None leaves a value unchanged."""
 
     robots: Count | None = None
     order_slots: Count | None = None
@@ -60,7 +60,7 @@ class ExplicitOverrides(Strict):
 
 
 FACTORS = ("pick_station_share", "replenishment_station_share", "robots_per_pick_station")
-"""Keys that also apply to generated and drawn layouts, where they are applied last."""
+"""Keys that are also valid for generated and drawn layouts, to which they are applied last."""
 
 
 def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source: str) -> Layout:
@@ -70,17 +70,18 @@ def override(layout: Layout, overrides: Sequence[tuple[list[str], Any]], source:
     ----------
     overrides
         Pairs of a key, as a list of its parts, and its new value, such as `(["robots"], 16)`.
-        `robots` is the number of robots per tier. If it or `robots_per_pick_station` is given, the
-        robots get new positions, drawn from the road waypoints. If only a share of the stations of
-        a kind is kept, those that are switched on first remain; their number is rounded down, but
-        is at least one.
+        `robots` is the number of robots per tier. If `robots` or `robots_per_pick_station` is
+        given, the robots are replaced by robots of the first robot's kind, at random waypoints that
+        are neither storage locations nor in queue zones. If only a share of the stations of a kind
+        is kept, the stations that are activated first remain; their number is rounded down, but is
+        at least one.
     source
-        Name of the file, for messages.
+        Name of the file, for error messages.
 
     Raises
     ------
     InputError
-        If a key cannot be overridden in an explicit layout, or a value is wrong.
+        If a key cannot be overridden in an explicit layout, or a value is invalid.
     """
     if not overrides:
         return layout
@@ -129,7 +130,7 @@ def _robot_kinds(layout: Layout, overrides: ExplicitOverrides) -> Layout:
 
 
 def _fewer_stations(layout: Layout, overrides: ExplicitOverrides) -> Layout:
-    """Remove stations; the places of their queues become roads."""
+    """Remove stations; the waypoints of their queues become road waypoints."""
     picks = _first(layout.pick_stations, overrides.pick_station_share)
     others = _first(layout.replenishment_stations, overrides.replenishment_station_share)
     fewer = replace(layout, pick_stations=picks, replenishment_stations=others)
@@ -144,7 +145,7 @@ S = TypeVar("S", PickStation, ReplenishmentStation)
 
 
 def _first(stations: tuple[S, ...], share: float | None) -> tuple[S, ...]:
-    """Return the share of stations that is switched on first, in the original order."""
+    """Return the given share of the stations, those activated first, in the original order."""
     if share is None or not stations:
         return stations
     # a share such as 0.7 is slightly less than seven tenths in binary
@@ -154,7 +155,7 @@ def _first(stations: tuple[S, ...], share: float | None) -> tuple[S, ...]:
 
 
 def _robots(layout: Layout, per_tier: Sequence[int], source: str) -> Layout:
-    """Replace the robots: all of the first robot's kind, on the road waypoints of every tier."""
+    """Replace the robots by robots of the first one's kind, at road waypoints of every tier."""
     road = ~layout.is_storage & ~layout.is_queue
     drawn = []
     for tier, number in enumerate(per_tier):

@@ -1,8 +1,9 @@
 """The parameters of a generated layout, as in a `rmfs-layout/1` file.
 
 The parameters and their default values follow RAWSim-O (section 3.1.1 of the paper on RAWSim-O, and
-the file format .xlayo); the names are in plain words, with the unit as suffix. Parameters are
-explained only by their `Field` descriptions, which `rmfs layout new` writes as comments.
+the file format `.xlayo`). Unlike in RAWSim-O, the names are plain words with the unit as suffix.
+The `Field` descriptions are the only explanations of the parameters; `rmfs layout new` writes them
+as comments.
 """
 
 from __future__ import annotations
@@ -18,28 +19,28 @@ from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Spac
 
 
 class PerSide(Strict):
-    """Number on each side of a tier."""
+    """Numbers of stations or elevators on each side of a tier."""
 
-    west: Amount = Field(0, description="on the side with the smallest x")
-    east: Amount = Field(0, description="on the side with the largest x")
+    west: Amount = Field(0, description="number on the side with the smallest x")
+    east: Amount = Field(0, description="number on the side with the largest x")
     south: Amount = Field(
-        0, description="on the side with the largest y: south is at the top of a picture"
+        0, description="number on the side with the largest y, which is at the top of a picture"
     )
     north: Amount = Field(
-        0, description="on the side with the smallest y, at the bottom of a picture"
+        0, description="number on the side with the smallest y, which is at the bottom of a picture"
     )
 
     @property
     def total(self) -> int:
-        """Total number on all four sides of a tier."""
+        """Total number of stations or elevators on the four sides of a tier."""
         return self.west + self.east + self.south + self.north
 
 
 class OtherStations(PerSide):
-    """Stations of a further kind: how many stand on each side of a tier, and their parameters.
+    """Numbers and parameters of the stations of a further kind.
 
-    Unlike pick and replenishment stations, they may also stand within the storage area, each in
-    place of a storage location.
+    Unlike pick and replenishment stations, such stations can also be placed within the storage
+    area, where each of them replaces a storage location.
     """
 
     within: Amount = Field(0, description="number within the storage area of a tier")
@@ -47,24 +48,26 @@ class OtherStations(PerSide):
         description="class of the stations, as `module:Class`, `path/to/file.py:Class` or a "
         "registered name such as `charger`"
     )
-    parameters: dict[str, Any] = Field(default_factory=dict, description="parameters of the class")
+    parameters: dict[str, Any] = Field(default_factory=dict, description="parameters of this class")
 
 
 class LayoutParameters(Strict):
     """Parameters of a generated layout.
 
-    All errors are reported together: every invalid value and, among the valid values, every
-    violated condition that involves several of them.
+    All errors are reported together: invalid values, and violated conditions on several values.
+    Conditions that involve an invalid value are not checked.
     """
 
     format: Literal["rmfs-layout/1"] = Field("rmfs-layout/1", description="version of this format")
     name: str = Field("unnamed", min_length=1, description="name shown in results")
     seed: Amount = Field(0, description="random seed for the positions of pods and robots")
 
-    tiers: Some = Field(1, description="floors; more than one needs elevators")
+    tiers: Some = Field(
+        1, description="number of tiers (floors); elevators are required if it is above 1"
+    )
     tier_height_m: Metres = Field(4.0, description="height of a tier in m, for drawing only")
 
-    robots: Some = Field(16, description="robots per tier")
+    robots: Some = Field(16, description="number of robots per tier")
     robot_radius_m: Radius = Field(0.35, description="radius of a robot, m")
     acceleration_m_s2: Rate = Field(1.0, description="acceleration of robots, m/s2")
     deceleration_m_s2: Rate = Field(1.0, description="deceleration of robots, m/s2")
@@ -82,16 +85,20 @@ class LayoutParameters(Strict):
         "pods is rounded down per tier",
     )
     pod_radius_m: Radius = Field(0.45, description="radius of a pod, m")
-    pod_capacity: Space = Field(500.0, description="space units per pod")
+    pod_capacity: Space = Field(500.0, description="capacity of a pod in space units")
 
     station_radius_m: Radius = Field(0.45, description="radius of a station, m")
     unit_transfer_s: Seconds = Field(
-        10.0, description="time in s for which a unit occupies the pick station"
+        10.0, description="time in s for which a unit keeps the pick station busy"
     )
-    unit_pick_s: Seconds = Field(3.0, description="time in s for which a unit occupies the robot")
+    unit_pick_s: Seconds = Field(
+        3.0, description="time in s for which a unit keeps the robot at the pick station"
+    )
     order_slots: Some = Field(12, description="maximum number of open orders at a pick station")
     bundle_transfer_s: Seconds = Field(
-        10.0, description="time in s for which a bundle occupies robot and replenishment station"
+        10.0,
+        description="time in s for which a bundle keeps the replenishment station and the robot "
+        "busy",
     )
     replenishment_station_capacity: Space = Field(
         1000.0,
@@ -99,14 +106,15 @@ class LayoutParameters(Strict):
         "replenishment station at any time",
     )
     elevator_s_per_tier: Seconds = Field(
-        10.0, description="duration of an elevator ride over one tier, s"
+        10.0, description="duration of an elevator ride from one tier to the next, s"
     )
 
     hall_pattern: Literal["tim", "highway"] = Field(
         "tim",
-        description="pattern of the halls, the areas between the storage area and the queues of "
-        "stations. Besides the lanes that cross a hall, lanes run along it: two beside the queues "
-        '("tim"), or one per tile of its width ("highway")',
+        description="pattern of the lanes in the halls (the areas between the storage area and "
+        'the queues of stations). With "tim", two lanes run along each hall, beside the queues; '
+        'with "highway", a lane runs along the hall on each tile of its width. With both, further '
+        "lanes cross the hall",
     )
     two_directional_aisles: bool = Field(
         False, description="whether all aisles are two-way; otherwise all are one-way"
@@ -119,7 +127,7 @@ class LayoutParameters(Strict):
         ge=2,
         le=1000,
         description="number of horizontal aisles; must be even if aisles are one-way, or if they "
-        'are one tile wide and halls are "highway"',
+        'are one tile wide and the hall pattern is "highway"',
     )
     vertical_aisles: int = Field(
         6,
@@ -136,31 +144,36 @@ class LayoutParameters(Strict):
         description="length of a storage block in x, in tiles of 1 m; its depth in y is 2 tiles",
     )
     hall_width: int = Field(
-        6, ge=2, le=1000, description='width of a hall in tiles; must be even for "highway"'
+        6,
+        ge=2,
+        le=1000,
+        description='width of a hall in tiles; must be even if the hall pattern is "highway"',
     )
     buffer_width: int = Field(
         4,
         ge=2,
         le=1000,
-        description="length of each straight segment of a station's queue, in tiles",
+        description="length, in tiles, of the parallel segments that form the queue zone of a "
+        "station; there are `entry_exit_distance` + 1 of them",
     )
     entry_exit_distance: int = Field(
         3,
         ge=1,
         le=1000,
-        description="distance from a queue's entrance to its exit, in tiles; must be odd",
+        description="distance from the entrance of a queue zone to its exit, in tiles; must be "
+        "odd and at most 5",
     )
     counter_clockwise_ring: bool = Field(
         True,
         description="whether the one-way road around the storage area runs counter-clockwise, with "
-        "x to the right and y upwards; if not, all one-way roads are reversed",
+        "x to the right and y upwards; if false, all one-way roads are reversed",
     )
 
     pick_stations: PerSide = Field(PerSide(east=4), description="pick stations per tier")
     replenishment_stations: PerSide = Field(
         PerSide(west=4), description="replenishment stations per tier"
     )
-    elevators: PerSide = Field(PerSide(), description="elevators, which connect all tiers")
+    elevators: PerSide = Field(PerSide(), description="elevators, each of which connects all tiers")
     other_stations: dict[str, OtherStations] = Field(
         default_factory=dict, description="stations of other kinds, per tier, by name of the kind"
     )

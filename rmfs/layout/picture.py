@@ -58,19 +58,19 @@ def draw(
 
     Pick stations are red, replenishment stations yellow, elevators purple and robots green;
     stations of other kinds have their own colours. Storage locations are blue squares, dark where a
-    pod stands. Queue zones have a dotted outline, and the hallway (the area between storage area
-    and queues) has a dashed one. Tiers are drawn side by side.
+    pod stands. Queue zones have a dotted outline; the halls (the areas between the storage area and
+    the queues) have a dashed outline. Tiers are drawn side by side.
 
     Parameters
     ----------
     ax
-        Axes to draw on, in metres.
+        Axes to draw on; coordinates are in m.
     arrows
         Whether to draw the direction of one-way edges.
     pods, robots
         Whether to show the pods and the robots, at their initial positions.
     legend
-        Whether to add a legend of the colours and lines below the figure.
+        Whether to add a legend of the colours and lines below the plan.
     """
     points = _points(layout)
     pitch_m = _pitch(layout)
@@ -90,7 +90,7 @@ def draw(
 
 
 def save_picture(layout: Layout, path: Path, *, arrows: bool = False) -> None:
-    """Save a drawing of a layout as SVG, PNG or PDF; equal layouts give equal files.
+    """Save a drawing of a layout as SVG, PNG or PDF; equal layouts result in identical files.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def save_picture(layout: Layout, path: Path, *, arrows: bool = False) -> None:
 
 
 def _offsets(layout: Layout) -> Points:
-    """Return the x position of the west side of each tier, plus one for the end."""
+    """Return the x position of the west side of each tier, and of one more tier after the last."""
     lengths = np.array([tier.length_m for tier in layout.tiers])
     return np.concatenate([[0.0], np.cumsum(lengths + TIER_GAP_M)])
 

@@ -1,4 +1,4 @@
-"""Reports the errors found in a file, in a message of one line."""
+"""Reports the errors found in a file in a one-line message."""
 
 from __future__ import annotations
 
@@ -9,18 +9,20 @@ MOST_PROBLEMS = 10
 
 
 def stop_if_any(problems: list[str], source: object) -> None:
-    """Raise an exception if a list of errors is not empty.
+    """Raise an exception if any errors were found in a file.
 
     Parameters
     ----------
+    problems
+        Descriptions of the errors.
     source
         Name of the file that contains the errors.
 
     Raises
     ------
     InputError
-        If `problems` is not empty; the message is one line with the first ten errors and the number
-        of the rest.
+        If `problems` is not empty. The message, one line, contains the first ten errors and the
+        number of further errors.
     """
     if problems:
         more = len(problems) - MOST_PROBLEMS

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def to_toml(parameters: LayoutParameters) -> str:
-    """Return the text of a layout file, with meanings and units of parameters in comments."""
+    """Return the text of a layout file; comments explain the parameters and their units."""
     plain, tables = [], []
     for key, field in type(parameters).model_fields.items():
         value = getattr(parameters, key)

@@ -1,4 +1,4 @@
-"""Types of values, shared by the formats of layout files."""
+"""Types of values that several formats of layout files share."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ Some = Annotated[int, Field(ge=1, le=100_000)]
 
 
 class Strict(Model):
-    """A table of a layout file, in which numbers must be finite and written as numbers.
+    """A table of a layout file, in which numbers must be finite.
 
-    For example, neither "16" nor true is accepted as a number.
+    Values of other types are not converted: neither "16" nor true is accepted as a number.
     """
 
     model_config = pydantic.ConfigDict(strict=True, allow_inf_nan=False)

@@ -44,7 +44,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Import an exported name on first use: training does not need Gymnasium."""
+    """Import an exported name on first use, so that training does not need Gymnasium."""
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     import importlib

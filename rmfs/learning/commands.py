@@ -65,7 +65,7 @@ def require_toml(out: Path) -> None:
     Raises
     ------
     InputError
-        If it does not.
+        If the suffix is not `.toml`.
     """
     if out.suffix != ".toml":
         raise InputError(f"--out {out}: must be a .toml file")
@@ -78,12 +78,12 @@ def task_of(
     seeds: str,
     overrides: Sequence[str] | None,
 ) -> Task:
-    """Return the task that the options of a training command describe.
+    """Return the training task that the options of a command describe.
 
     Parameters
     ----------
     inputs
-        Layout, scenario and set of controllers: names or files.
+        Layout, scenario and set of controllers, each as a name or a file.
     problems, objective, seeds, overrides
         Values of the options `--problems`, `--objective`, `--seeds` and `--set`.
 
@@ -106,7 +106,7 @@ def task_of(
 
 
 def weight(option: str, text: str) -> tuple[str, float]:
-    """Return the name and the weight in `NAME=WEIGHT`, a part of an option's value."""
+    """Split `NAME=WEIGHT`, a part of an option's value, into name and weight (1 if missing)."""
     column, _, weight = text.partition("=")
     try:
         return column.strip(), float(weight or 1.0)
@@ -116,7 +116,7 @@ def weight(option: str, text: str) -> tuple[str, float]:
 
 
 def number(text: str) -> int:
-    """Return a seed of the option `--seeds`."""
+    """Convert one seed of the option `--seeds` to a number."""
     if not text.strip().isdigit():
         raise InputError(f"--seeds {text}: must be numbers, 0 or greater, separated by commas")
     return int(text)

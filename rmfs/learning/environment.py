@@ -33,20 +33,24 @@ LARGEST_SEED = 2**31 - 1
 
 
 class DecisionEnv(gymnasium.Env[Any, np.int64]):
-    """An environment in which an episode is a run and a step is a decision of the chosen problems.
+    """An environment in which an episode is a run and a step is one decision of a chosen problem.
 
-    Actions 0 to k - 1 choose one of the k best candidates (possible answers), in order of their
-    ranking. Action k declines, that is, chooses none of them. With `rule`, action k + 1 gives the
-    answer of the problem's controller (the installed rule). A question of POA, ROA, RPS, SA, MM, CA
-    or TA can be answered by several decisions, one per step, until the agent declines. If only one
-    of the actions 0 to k is possible, it is carried out without a step (unless, with `rule`, there
-    are no candidates, but the rule has an answer). An impossible action sets `info["invalid"]` and
-    counts as declining or, where declining is impossible, as action 0.
+    In each step, the agent answers a question, for example which pod to bring to a station. Actions
+    0 to k - 1 choose one of the k best candidates (possible answers), in order of their ranking.
+    Action k declines, that is, chooses no candidate. With `rule`, action k + 1 gives the answer of
+    the problem's controller (the installed rule). A question of POA, ROA, RPS, SA, MM, CA or TA can
+    be answered by several decisions, one per step, until the agent declines.
 
-    An observation is a dictionary with the arrays `global`, shape (G,), `candidates`, shape (k, F),
-    and `action_mask`; if `observation` is `flat`, it is one vector, the first two concatenated. The
-    attribute `observing.global_features` describes the G features in `global`, and
-    `observing.features` the F features of each candidate.
+    If only one of the actions 0 to k is possible, the environment carries it out without asking
+    the agent. There is one exception: with `rule`, the agent is also asked if there are no
+    candidates but the rule has an answer. An impossible action sets `info["invalid"]`; it counts as
+    action k if declining is possible, and otherwise as action 0.
+
+    An observation is a dictionary of the arrays `global`, shape (G,), `candidates`, shape (k, F),
+    and `action_mask`, which has one element per action. If the parameter `observation` is `flat`,
+    an observation is one vector: `global` followed by the rows of `candidates`. The attribute
+    `observing.global_features` describes the G features in `global`, and `observing.features` the F
+    features of each candidate.
 
     An episode ends with the run. Since the warehouse would continue, the episode is `truncated`,
     not `terminated`; `info["footprint"]` then contains the measures of the run. The time between
@@ -56,31 +60,31 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     Parameters
     ----------
     layout, scenario, controllers, set
-        As for `rmfs.Simulation`. The controllers decide the problems that the agent does not.
+        As for `rmfs.Simulation`. The controllers decide all problems that are not in `problems`.
     problems
         The problems that the agent decides, such as `["ta", "pps"]`.
     candidates
         Maximum number k of candidates offered in a step.
     rankings
-        Weights of features for ranking the candidates, by kind of question. For kinds not given,
-        those of `rmfs.control.features.RANKINGS` apply.
+        Weights of features for ranking the candidates, by kind of question. For kinds that are not
+        given, the weights in `rmfs.control.features.RANKINGS` are used.
     reward
-        A name, weights by name, or a user-defined class (`rmfs.learning.rewards`).
+        The name of a reward, weights by name, or a user-defined class (`rmfs.learning.rewards`).
     observation
-        `dict` or `flat`.
+        Form of the observations: `dict` or `flat`.
     rule
-        Whether following the installed rule is one of the actions. A rule assumes that all its
+        Whether action k + 1 exists, which follows the installed rule. A rule assumes that all its
         decisions are carried out; if some are not, its later answers may not suit the situation.
     footprint
         Whether to measure runs, so that `info` contains the footprint at the end. Without
         measurement, steps are 5 to 10 % faster.
     render_mode
-        `rgb_array` or None.
+        `rgb_array` if `render` is to return pictures; otherwise None.
 
     Raises
     ------
     InputError
-        If an argument is invalid; the message names it and what would be valid.
+        If an argument is invalid; the message names the argument and the valid values.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 4}  # noqa: RUF012
@@ -145,7 +149,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return self._options
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return which actions are possible, shape (actions,); MaskablePPO calls this method."""
+        """Return whether each action is possible, shape (actions,); called by MaskablePPO."""
         if self._options is None:
             mask = np.zeros(self.actions, np.bool_)
             mask[self.decline] = True
@@ -156,7 +160,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start a run with the given seed or, without one, a seed drawn by the environment."""
+        """Start a run; if no seed is given, the environment draws one."""
         super().reset(seed=seed)
         if seed is None:
             seed = int(self.np_random.integers(LARGEST_SEED))
@@ -173,7 +177,7 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
         return self._observation(mask), self._info(begun_s, mask)
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Make a decision and simulate up to the next one."""
+        """Carry out an action, and simulate up to the next decision."""
         run, options = self.run, self._options
         if options is None:
             raise RuntimeError("the episode has ended: call reset")
@@ -200,9 +204,8 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def advised(self) -> int:
         """Return the action that agrees with the installed rule; requires `rule`.
 
-        If the rule would choose one of the candidates offered, the action that chooses this
-        candidate is returned; if the rule would decline, action k; and otherwise action k + 1,
-        which follows the rule.
+        If the rule's answer is one of the candidates offered, this is the action that chooses the
+        candidate. If the rule declines, it is action k; otherwise, it is action k + 1.
         """
         options = self._options
         if options is None or not self._with_rule:

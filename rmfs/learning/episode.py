@@ -1,4 +1,4 @@
-"""Episodes of learning: simulations with a reward, created quickly one after another."""
+"""Episodes for learning: simulations with a reward, created quickly one after another."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 
 class Episode(Simulation):
-    """A simulation, together with the reward that observes it; both are copied together.
+    """A simulation with a reward that observes it; copying a simulation copies its reward, too.
 
     Parameters
     ----------
     reward
-        Observer that accumulates the reward.
-    arguments
-        As for `rmfs.Simulation`.
+        The reward, which is added to the observers of the simulation.
+    arguments, named
+        Other arguments, as for `rmfs.Simulation`.
     """
 
     checks_layout = False
@@ -41,23 +41,23 @@ class Episode(Simulation):
 class Episodes:
     """Creates episodes of one warehouse; files are read and the layout is checked only once.
 
-    When a seed is used for the second time, the run is kept in the state before its first event;
-    this episode and later ones with the seed are copies of the run.
+    When a seed is used for the second time, the run is stored in its state before the first event.
+    This episode and later episodes with the same seed are copies of the stored run.
 
     Parameters
     ----------
     layout, scenario, controllers, set
         As for `rmfs.Simulation`.
     problems
-        Problems decided by the learner, outside the simulation.
+        Decision problems that the learner decides instead of the controllers.
     reward
-        See `rmfs.learning.rewards.reward_of`.
+        The reward, as for `rmfs.learning.rewards.reward_of`.
     measured
-        Whether runs are measured, so that they have results.
+        Whether runs are measured. Runs that are not measured have no result.
     """
 
     KEPT = 8
-    """Maximum number of runs that are kept, in the state before their first event, to be copied."""
+    """Maximum number of runs that are stored to be copied."""
 
     def __init__(
         self,
@@ -83,7 +83,7 @@ class Episodes:
         reward_of(reward)  # reports errors early
 
     def begin(self, seed: int) -> Episode:
-        """Return a run with the given seed, in the state before its first event."""
+        """Return a new run with the given seed, in its state before the first event."""
         if seed in self._kept:
             return self._kept[seed].fork()
         episode = self._made(seed)

@@ -21,7 +21,7 @@ def learn_network(
     controllers: Annotated[
         str,
         typer.Option(
-            help="Set of controllers, used for all problems that are not trained; training goes on "
+            help="Set of controllers, used for all problems that are not trained; training starts "
             "from its network rules."
         ),
     ] = "default",
@@ -35,7 +35,7 @@ def learn_network(
     objective: Annotated[
         str,
         typer.Option(
-            help="Objective by which the best rules are kept, as footprint columns: "
+            help="Objective by which the best rules are selected, as footprint columns: "
             "COLUMN=WEIGHT,..."
         ),
     ] = "units_picked=1",

@@ -1,4 +1,4 @@
-"""Sets of controllers with network rules, as training creates them."""
+"""Sets of controllers with network rules, for training."""
 
 from __future__ import annotations
 
@@ -26,19 +26,21 @@ KINDS: dict[Problem, dict[str, str]] = {
     Problem.PSA: {"network": "place"},
     Problem.TA: {"network": "ta"},
 }
-"""For each problem that a `Task` may train, the parameters of its network rule that are trained,
-each with the kind of question to which its network applies."""
+"""For each problem that a `Task` may train, the parameters of its network rule that are networks,
+each with the kind of question for which the network is used."""
 
 
 def network_rules(
     task: Task, networks: Mapping[str, Network], candidates: int = CANDIDATES
 ) -> ControllerSettings:
-    """Return the task's controllers, with network rules for the problems that are trained.
+    """Return the task's set of controllers, with network rules for the problems that are trained.
 
     Parameters
     ----------
     networks
-        The networks by kind of question.
+        The networks of these rules, by kind of question.
+    candidates
+        Maximum number of candidates that the rules score.
     """
     base = task.base()
     choices = dict(base.choices)
@@ -66,5 +68,5 @@ def first_networks(task: Task) -> dict[str, Network]:
 
 
 def mean_value(task: Task, settings: ControllerSettings) -> float:
-    """Return the mean objective over the seeds of a task."""
+    """Return the mean objective of a set of controllers over the seeds of a task."""
     return float(np.mean([task.value_of(settings, seed) for seed in task.seeds]))

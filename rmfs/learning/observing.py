@@ -35,20 +35,20 @@ _NONE = np.empty(0, np.int64)
 
 
 class Options(NamedTuple):
-    """The answers offered to a policy.
+    """The answers from which a policy can choose.
 
     Attributes
     ----------
     decision
-        The question.
+        The question to be answered.
     rows
-        Row numbers in `decision.candidates` of the best candidates (at most k), the best first.
+        Rows of `decision.candidates` with the best candidates (at most k), the best first.
     features
-        Scaled features of these candidates, shape (k, F); if there are fewer than k, the
-        remaining rows are zero.
+        The F scaled features of each of these candidates, shape (k, F). With fewer than k
+        candidates, the remaining rows are zero.
     mask
-        Which actions are possible, shape (k + 1,): action i chooses the candidate in `rows[i]`, and
-        the last action declines.
+        Whether each action is possible, shape (k + 1,): action i chooses the candidate in row
+        `rows[i]`, and action k declines.
     """
 
     decision: Decision
@@ -63,7 +63,7 @@ class Options(NamedTuple):
 
     @property
     def is_forced(self) -> bool:
-        """Whether only one action is possible."""
+        """Whether at most one action is possible."""
         return len(self.rows) + self.mask.item(-1) < 2
 
 
@@ -77,18 +77,19 @@ class Observing:
     candidates
         Maximum number k of candidates offered.
     rankings
-        Weights of features for ranking the candidates, by kind of question. For kinds not given,
-        those of `rmfs.control.features.RANKINGS` apply.
+        Weights of features for ranking the candidates, by kind of question. For kinds that are not
+        given, the weights in `rmfs.control.features.RANKINGS` are used.
 
     Attributes
     ----------
     kinds
-        Kinds of question that may be asked.
+        Kinds of question that come up in these problems.
     features
-        Descriptions of the features of a candidate, in order of the columns of `Options.features`.
+        Descriptions of the F features of a candidate, in order of the columns of
+        `Options.features`.
     global_features
-        Descriptions of the features of warehouse and question, in order of the elements of the
-        vector that `globals_of` returns.
+        Descriptions of the G features of the warehouse and the question, in order of the elements
+        of the vector that `globals_of` returns.
 
     Raises
     ------
@@ -138,12 +139,12 @@ class Observing:
         }
 
     def options(self, decision: Decision, *, may_move: bool) -> Options:
-        """Return the best candidates of a question, their features, and the mask of actions.
+        """Return the best candidates of a question, their features, and which actions are possible.
 
         Parameters
         ----------
         may_move
-            Whether the candidates of TA include the task of moving an idle pod.
+            Whether the candidates of TA include repositioning, the task of moving an idle pod.
         """
         kind = kind_of(decision)
         if kind == "ta" and not may_move and lacks_tasks(decision.view):
@@ -171,21 +172,22 @@ class Observing:
         return Options(decision, _NONE, self._nothing, mask)
 
     def globals_of(self, view: View, decision: Decision | None) -> NDArray[np.float32]:
-        """Return the features of the warehouse and then of the question, shape (G,).
+        """Return the features of the warehouse, followed by those of the question, shape (G,).
 
-        Those of the question are a one-hot encoding of its kind, or 0 if there is none.
+        The features of the question are a one-hot encoding of its kind; they are all 0 without a
+        question.
         """
         kind = "" if decision is None else kind_of(decision)
         return np.concatenate((overview(view), self._is_kind[kind]))
 
 
 def kind_of(decision: Decision) -> str:
-    """Return `decision.kind`, or the name of the problem if that kind is `turn`."""
+    """Return the kind of a question or, if that is `turn`, the name of the problem."""
     return decision.problem if decision.kind == "turn" else decision.kind
 
 
 def _mask(count: int, k: int, may_decline: bool) -> NDArray[np.bool_]:
-    """Return which of k + 1 actions are possible, with so many candidates; not to be changed."""
+    """Return whether each of k + 1 actions is possible with `count` candidates; read-only."""
     mask = np.zeros(k + 1, np.bool_)
     mask[:count] = True
     mask[k] = may_decline
@@ -196,9 +198,10 @@ def _mask(count: int, k: int, may_decline: bool) -> NDArray[np.bool_]:
 def _places(
     kind: str, names: Sequence[str]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], int, float]:
-    """Return how the features of a kind of question enter an observation.
+    """Return the place of a kind's features in an observation.
 
-    These are their scales, their columns, the number of all columns, and the clipping limit.
+    The result consists of the scales and columns of these features, the total number of columns,
+    and the limit to which values are clipped.
     """
     places = np.array([names.index(name) for name in COLUMNS[kind]], np.int64)
     scales = np.array([SCALES[name] for name in COLUMNS[kind]], np.float64)
@@ -220,5 +223,5 @@ def _checked(rankings: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str,
 
 
 def is_same(answer: Any, other: Any) -> bool:
-    """Return whether two answers are equal."""
+    """Return whether two answers have the same type and are equal."""
     return type(answer) is type(other) and bool(answer == other)

@@ -1,9 +1,9 @@
 """Training of network rules by proximal policy optimisation (PPO).
 
 The agent of a `DecisionEnv` decides some problems with networks that score candidates, and
-MaskablePPO of the package sb3-contrib trains these networks. From time to time, they are made into
-network rules, which are simulated; the best rules are returned. Training needs the extra `ppo`;
-simulating the rules does not.
+MaskablePPO of the package sb3-contrib trains these networks. From time to time, network rules are
+created from the networks and simulated; the best of these rules are returned. Training needs the
+extra `ppo`; simulating the rules does not.
 """
 
 from __future__ import annotations
@@ -36,33 +36,35 @@ def train_network(
 ) -> Trained:
     """Train network rules for the problems of a task, and return the best rules found.
 
-    Training starts from the network rules among the task's controllers; a problem with another rule
-    starts from `rmfs.control.network.start`. Training runs have the seeds 1000000, 1000001 and so
-    on. The rules are simulated with the task's seeds before training, and `checks` times during it;
-    those with the best mean objective are returned. The result depends on the versions of PyTorch
-    and sb3-contrib.
+    If the controller of a problem is a network rule, training starts from its networks; otherwise,
+    it starts from `rmfs.control.network.start`. Training runs have the seeds 1000000, 1000001, ...
+    Before training, and `checks` times during training, the rules are simulated with the task's
+    seeds; the rules with the best mean objective are returned. The result depends on the versions
+    of PyTorch and sb3-contrib.
 
     Parameters
     ----------
     reward
-        The reward that PPO maximises (`rmfs.learning.rewards`); it is divided by the standard
-        deviation of the discounted sum of rewards.
+        The reward that PPO maximises (`rmfs.learning.rewards`). During training, rewards are
+        divided by the standard deviation of their discounted sum.
     steps
         Number of decisions; rounded up to a multiple of 2048.
     hidden
-        Number of units in the hidden layer of each network.
+        Number of units in the hidden layer of each network. Networks that have layers already keep
+        them.
     candidates
-        Maximum number of candidates that are scored.
+        Maximum number of candidates that are scored for a question.
     gamma
         Discount factor per decision.
     learning_rate
         Initial learning rate; it falls linearly to 0.
     checks
-        Number of times that the rules are simulated during training.
+        Number of times that the rules are simulated during training; fewer if `steps` is less than
+        2048 times this number.
     average
-        Whether the mean reward per second, times the time since the last decision, is subtracted
-        from each reward. Since PPO discounts by decision, it would otherwise maximise the reward
-        per decision rather than per second.
+        Whether to subtract from each reward the mean reward per second times the seconds since the
+        last decision. Otherwise, PPO maximises the reward per decision rather than per second,
+        because it discounts by decision.
     seed
         Seed of the initial weights and of PPO.
     told

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 FIRST_SEED = 1_000_000
 """Seed of the first training run; each further run has the next seed."""
 ENVIRONMENTS = 8
-"""Number of runs that are simulated in turn, in one process."""
+"""Number of environments; one process simulates their runs alternately."""
 ROLLOUT = 2048
 """Number of decisions between two updates of the networks."""
 
@@ -47,7 +47,7 @@ def learned(
     seed: int,
     told: Callable[[str], None] | None,
 ) -> Trained:
-    """Train as described at `rmfs.learning.ppo.train_network`."""
+    """Train network rules; see `rmfs.learning.ppo.train_network`."""
     torch.set_num_threads(1)
     first = first_networks(task)
     settings = network_rules(task, first, candidates)
@@ -101,13 +101,13 @@ class Rate:
     """The mean reward per second of recent decisions in all environments."""
 
     MEMORY_S = 20_000.0
-    """Simulated time after which a reward has lost most of its weight in the mean."""
+    """Simulated time, in s, after which the weight of a reward in the mean has fallen to 1 / e."""
 
     def __init__(self) -> None:
         self._reward, self._time_s = 0.0, 0.0
 
     def less_mean(self, reward: float, elapsed_s: float) -> float:
-        """Return a reward minus the product of elapsed time and mean reward per second."""
+        """Include a reward in the mean; return the reward minus elapsed time times mean."""
         kept = exp(-elapsed_s / self.MEMORY_S)
         self._reward = kept * self._reward + reward
         self._time_s = kept * self._time_s + elapsed_s
@@ -117,14 +117,15 @@ class Rate:
 
 
 class Training(DecisionEnv):
-    """An environment whose episodes have the training seeds, which are dealt to all environments.
+    """An environment for training, which uses every `ENVIRONMENTS`-th of the training seeds.
 
     Parameters
     ----------
     number
-        Number of the environment, from 0.
+        Number of the environment, from 0; its first seed is `FIRST_SEED + number`.
     rate
-        The mean reward per second, which is subtracted from rewards; None to leave them unchanged.
+        Mean reward per second; its product with the elapsed time is subtracted from each reward.
+        None: rewards are not changed.
     """
 
     def __init__(self, *arguments: Any, number: int, rate: Rate | None, **named: Any) -> None:
@@ -133,7 +134,7 @@ class Training(DecisionEnv):
         self._rate = rate
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
-        """Make a decision and simulate up to the next one."""
+        """Carry out an action, and simulate up to the next decision."""
         seen, reward, ended, over, info = super().step(action)
         if self._rate is not None:
             reward = self._rate.less_mean(reward, info["elapsed_s"])
@@ -142,13 +143,13 @@ class Training(DecisionEnv):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start the run with the next training seed; a given seed is ignored."""
+        """Start a run with the next training seed; `seed` is ignored."""
         seed, self._next_seed = self._next_seed, self._next_seed + ENVIRONMENTS
         return super().reset(seed=seed, options=options)
 
 
 class Checks(BaseCallback):
-    """Simulates the rules from time to time, and keeps the best ones.
+    """Simulates the rules from time to time during training, and stores the best ones.
 
     Attributes
     ----------

@@ -25,7 +25,7 @@ def picture(run: Kernel) -> NDArray[np.uint8]:
     """Draw the current state of a run as an RGB array, shape (height, width, 3).
 
     Pods are drawn where they are stored, or on the robots that carry them. Robots are drawn where
-    they stand, or where they will stop next.
+    they will stop next or, without a plan, where they stand.
     """
     world = run.world
     at = [run.traffic.robot_waypoint(robot.index) for robot in world.robots]

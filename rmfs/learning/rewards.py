@@ -1,8 +1,8 @@
 """Rewards: amounts accumulated since the last decision.
 
-A reward observes the run like a measure (`rmfs.observer.Observer`) and is copied with the run.
-Rewards are amounts (units, orders, metres). The time between decisions varies; `info["elapsed_s"]`
-is the time over which an amount accumulated.
+Like a measure, a reward observes the run (`rmfs.observer.Observer`); it is copied with the run.
+Rewards are amounts (of units, orders or metres), not rates. The time between decisions varies;
+`info["elapsed_s"]` is the time, in s, over which an amount was accumulated.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 class Reward(Observer):
     """Base class of rewards: an amount that accumulates during the run.
 
-    A user-defined reward overrides the callbacks it needs, which add to `self.amount`. It must
-    contain only plain data, because it is copied and saved with the run. The class is instantiated
-    without arguments.
+    A user-defined reward overrides the callbacks that it needs; these change `self.amount`. The
+    reward must contain only plain data, because it is copied and saved with the run. Its class must
+    be constructible without arguments.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Reward(Observer):
 
 
 class Units(Reward):
-    """1 for every unit picked."""
+    """Reward of 1 for every unit picked."""
 
     def unit_picked(
         self,
@@ -58,28 +58,28 @@ class Units(Reward):
         station: int,
         late_bound: bool,
     ) -> None:
-        """Count a unit."""
+        """Add 1."""
         self.amount += 1.0
 
 
 class Orders(Reward):
-    """1 for every order completed."""
+    """Reward of 1 for every order completed."""
 
     def order_completed(self, order: Order) -> None:
-        """Count an order."""
+        """Add 1."""
         self.amount += 1.0
 
 
 class Lateness(Reward):
-    """For every completed order, minus its tardiness in seconds (0 if it is on time)."""
+    """Reward of -1 per second of tardiness of each completed order."""
 
     def order_completed(self, order: Order) -> None:
-        """Subtract the seconds by which the order is late, if it is."""
+        """Subtract the tardiness of the order, in s."""
         self.amount -= max(0.0, order.completed_s - order.due_s)
 
 
 class LateOrders(Reward):
-    """-1 for every order completed after its due time."""
+    """Reward of -1 for every order completed after its due time."""
 
     def order_completed(self, order: Order) -> None:
         """Subtract 1 if the order is late."""
@@ -87,9 +87,9 @@ class LateOrders(Reward):
 
 
 class OverdueOrders(Reward):
-    """-1 for every order that is not completed by its due time, counted as soon as this passes.
+    """Reward of -1 for every order not completed by its due time, given when this time has passed.
 
-    In contrast to `LateOrders`, orders that are never completed count.
+    Unlike `LateOrders`, this reward also counts orders that are never completed.
     """
 
     def __init__(self) -> None:
@@ -97,25 +97,25 @@ class OverdueOrders(Reward):
         self._due: list[tuple[float, int]] = []
 
     def run_started(self, run: Observed) -> None:
-        """Keep a reference to the world, which knows the time."""
+        """Keep a reference to the world, which provides the time."""
         self._world = run.world
 
     def order_created(self, order: Order) -> None:
-        """Note the due time of an order."""
+        """Record the due time of an order."""
         self._open.add(order.index)
         heappush(self._due, (order.due_s, order.index))
 
     def order_cancelled(self, order: Order) -> None:
-        """Forget an order."""
+        """Remove an order, which then no longer counts."""
         self._open.discard(order.index)
 
     def order_completed(self, order: Order) -> None:
-        """Count orders that are overdue by now, and forget this one."""
+        """Count the orders that have become overdue, then remove the completed one."""
         self._catch_up()
         self._open.discard(order.index)
 
     def take(self) -> float:
-        """Return minus the orders whose due time has passed since the last call."""
+        """Return minus the number of orders that have become overdue since the last call."""
         self._catch_up()
         return super().take()
 
@@ -129,38 +129,38 @@ class OverdueOrders(Reward):
 
 
 class Stored(Reward):
-    """1 for every unit stored in a pod."""
+    """Reward of 1 for every unit stored in a pod."""
 
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
-        """Count the units of a bundle."""
+        """Add the number of units in the bundle."""
         self.amount += bundle.units
 
 
 class Turnover(Reward):
-    """For every completed order, minus the seconds from its arrival to its completion."""
+    """Reward of -1 per second of turnover time of each completed order."""
 
     def order_completed(self, order: Order) -> None:
-        """Subtract the seconds from the order's arrival to its completion."""
+        """Subtract the time from the arrival of the order to its completion, in s."""
         self.amount -= order.completed_s - order.created_s
 
 
 class Distance(Reward):
-    """Minus the metres driven by all robots together."""
+    """Reward of -1 for every metre that a robot drives."""
 
     def __init__(self) -> None:
         self._known_m = 0.0
 
     def run_started(self, run: Observed) -> None:
-        """Keep a reference to the traffic model, which adds up distances."""
+        """Keep a reference to the traffic model, which counts the distance driven."""
         self._traffic = run.traffic
 
     def warmup_ended(self, time_s: float) -> None:
-        """Count the distance so far, because the traffic model will now start again from 0."""
+        """Subtract the distance driven so far, because the traffic model resets its count to 0."""
         self._catch_up()
         self._known_m = 0.0
 
     def take(self) -> float:
-        """Return minus the metres driven since the last call."""
+        """Return minus the distance driven since the last call, in m."""
         self._catch_up()
         return super().take()
 
@@ -176,14 +176,14 @@ class Weighted(Reward):
     Parameters
     ----------
     parts
-        Pairs of a reward and its weight. Each of these rewards is an observer of the run.
+        Pairs of a reward and its weight. These rewards observe the run; their sum does not.
     """
 
     def __init__(self, parts: list[tuple[Reward, float]]) -> None:
         self.parts = parts
 
     def take(self) -> float:
-        """Return the weighted sum of the amounts of the parts, and reset them to 0."""
+        """Return the weighted sum of the amounts of all parts, and reset these amounts to 0."""
         return sum(weight * part.take() for part, weight in self.parts)
 
 
@@ -212,7 +212,7 @@ def reward_of(wanted: Wanted) -> Reward:
     Raises
     ------
     InputError
-        If there is no such reward, or no reward is named.
+        If a reward does not exist, or if `wanted` names no reward.
     """
     if isinstance(wanted, (str, type)):
         return _one(wanted)
@@ -222,7 +222,7 @@ def reward_of(wanted: Wanted) -> Reward:
 
 
 def observers_of(reward: Reward) -> list[Observer]:
-    """Return what must observe the run: the parts of a weighted reward, or the reward itself."""
+    """Return the observers that a reward adds to a run: the reward itself or its weighted parts."""
     return [part for part, _ in reward.parts] if isinstance(reward, Weighted) else [reward]
 
 

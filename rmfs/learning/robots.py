@@ -41,27 +41,40 @@ _TURN = Question(Problem.TA, "turn")
 class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     """Task allocation with robots as agents; controllers decide everything else.
 
-    All robots are agents at all times. A step is a turn of TA, in which the robots that need a task
-    or are at rest choose what to do, in order of their numbers; the others can only wait. Let S be
-    the number of pick and replenishment stations. Action 0 waits; actions 1 to S work for a station
-    (PPS chooses the pod); S + 1 stores the pod (PSA chooses where); S + 2 moves an idle pod
-    (repositioning chooses which); and S + 3 rests. An action that has become impossible, because a
-    robot with a lower number took the work, counts as waiting.
+    All robots are agents at all times. A step is a turn of TA: robots that need a task or are at
+    rest choose what to do, in order of their numbers; all other robots can only wait. Let S be the
+    number of pick and replenishment stations. The actions are:
 
-    An observation consists of `observation`, shape (3 S + 4,), and `action_mask`. The elements of
-    `observation` are, in this order: for each station, the estimated travel time to it in units of
-    30 s; for each station, the units (at replenishment stations, the pods with waiting bundles) for
-    which no robot is under way, divided by 10; for each station, the number of robots working for
-    it, divided by 5; 1 if the robot can choose an action; 1 if it carries a pod; the share of the
-    run that is left; and the number of orders in the backlog divided by 100. The reward is common:
-    every robot receives the reward of the whole warehouse.
+    - 0: wait
+    - 1 to S: work for station 0 to S - 1 (PPS chooses the pod)
+    - S + 1: store the pod that the robot carries (PSA chooses the storage location)
+    - S + 2: move an idle pod (repositioning chooses the pod)
+    - S + 3: rest
+
+    If a robot with a lower number takes the work in the same step, an action can become impossible;
+    it then counts as waiting.
+
+    An observation consists of `observation`, shape (3 S + 4,), and `action_mask`, shape (S + 4,).
+    The elements of `observation` are, in this order:
+
+    - for each station, the estimated travel time from the robot to the station, divided by 30 s
+    - for each station, the amount of work for which no robot is on its way, divided by 10: units
+      at pick stations, pods with waiting bundles at replenishment stations
+    - for each station, the number of robots working for it, divided by 5
+    - 1 if the robot can choose an action, otherwise 0
+    - 1 if the robot carries a pod, otherwise 0
+    - the share of the run that is left
+    - the number of orders in the backlog, divided by 100
+
+    All elements are clipped to the range from -10 to 10. All robots receive the same reward, that
+    of the whole warehouse.
 
     Parameters
     ----------
     layout, scenario, controllers, set, reward
         As for `DecisionEnv`.
     render_mode
-        `rgb_array` or None.
+        `rgb_array` if `render` is to return pictures; otherwise None.
     """
 
     metadata: ClassVar[dict[str, Any]] = {
@@ -103,23 +116,29 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
 
     @property
     def run(self) -> Episode:
-        """The run of the current episode."""
+        """The run of the current episode.
+
+        Raises
+        ------
+        RuntimeError
+            If `reset` has not been called yet.
+        """
         if self._run is None:
             raise RuntimeError("reset the environment first")
         return self._run
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:
-        """Return the space of observations: the same for all robots."""
+        """Return the space of observations, which is the same for all robots."""
         return self._observation_space
 
     def action_space(self, agent: str) -> spaces.Space[Any]:
-        """Return the space of actions: the same for all robots."""
+        """Return the space of actions, which is the same for all robots."""
         return self._action_space
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Start a run with the given seed or, without one, a seed drawn by the environment."""
+        """Start a run; if no seed is given, the environment draws one."""
         if seed is not None:
             self._random = np.random.default_rng(seed)
         else:
@@ -133,7 +152,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     def step(
         self, actions: dict[str, Any]
     ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Any]]:
-        """Assign tasks to robots, and simulate up to the next turn of TA."""
+        """Carry out the actions of the robots, and simulate up to the next turn of TA."""
         run, agents = self.run, self.agents
         before_s = run.now_s
         for number, agent in enumerate(self.possible_agents):
@@ -167,7 +186,7 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
         return picture(self.run)
 
     def close(self) -> None:
-        """Release the run."""
+        """Discard the run of the current episode."""
         self._run = None
 
     # --- inside ---------------------------------------------------------------------------------

@@ -23,19 +23,23 @@ if TYPE_CHECKING:
 HIDDEN_VALUE = 64
 """Number of units in each of the two hidden layers of the value network."""
 NEVER = -1e4
-"""Score of declining where the network always chooses a candidate."""
+"""Score of declining for networks that always choose a candidate."""
 
 
 class KindScorer(nn.Module):
-    """Scores candidates of one kind of question, as `rmfs.control.network.Scorer` does.
+    """Scores candidates of one kind of question, by the formula of `rmfs.control.network.Scorer`.
 
     Parameters
     ----------
+    kind
+        The kind of question.
     first
-        Network from which training starts. If it has no layers, one hidden layer is added, whose
-        output is 0 at first.
+        Network from which training starts. If it has no layers, a hidden layer and an output layer
+        are added; at first, their output is 0.
     places
-        Positions of the features of this kind among those of an observation.
+        Indices of the features of this kind among the F features of a candidate in an observation.
+    hidden
+        Number of units in the hidden layer that is added.
     """
 
     def __init__(self, kind: str, first: Network, places: list[int], hidden: int) -> None:
@@ -66,14 +70,14 @@ class KindScorer(nn.Module):
         self.decline = nn.Parameter(torch.tensor([given.get(name, 0.0) for name in WHOLE]))
 
     def forward(self, whole: torch.Tensor, candidates: torch.Tensor) -> torch.Tensor:
-        """Return the scores of k candidates and of declining, shape (B, k + 1).
+        """Return the scores of k candidates and of declining, for B questions, shape (B, k + 1).
 
         Parameters
         ----------
         whole
-            Features of the warehouse, shape (B, G).
+            Features of the warehouse (without those of the question), shape (B, W).
         candidates
-            Features of the candidates, in order of the observation, shape (B, k, F).
+            The F features of each candidate, in order of the observation, shape (B, k, F).
         """
         own = candidates[:, :, self.places]
         around = whole[:, None, :].expand(-1, own.shape[1], -1)
@@ -88,7 +92,7 @@ class KindScorer(nn.Module):
         return torch.cat([scores, declining[:, None]], dim=1)
 
     def network(self, digits: int = 7) -> Network:
-        """Return what has been learned, with this number of significant digits."""
+        """Return the network learned so far; weights are rounded to `digits` significant digits."""
 
         def short(values: Any) -> Any:
             if isinstance(values, list):
@@ -113,12 +117,16 @@ class KindScorer(nn.Module):
 
 
 class Scores(nn.Module):
-    """The scores of all actions, and the input of the value network, from flat observations.
+    """Computes scores of actions, and features for the value function, from flat observations.
 
     Parameters
     ----------
+    observing
+        Defines the observations.
     first
         Networks from which training starts, by kind of question.
+    hidden
+        Number of units in the hidden layers that are added to networks without layers.
     """
 
     def __init__(self, observing: Observing, first: Mapping[str, Network], hidden: int) -> None:
@@ -140,11 +148,11 @@ class Scores(nn.Module):
         self.latent_dim_pi, self.latent_dim_vf = self.k + 1, HIDDEN_VALUE
 
     def forward(self, seen: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Return scores, shape (B, k + 1), and the input of the value, shape (B, 64)."""
+        """Return the results of `forward_actor` and `forward_critic` for B observations."""
         return self.forward_actor(seen), self.forward_critic(seen)
 
     def forward_actor(self, seen: torch.Tensor) -> torch.Tensor:
-        """Return the scores of all actions, shape (B, k + 1)."""
+        """Return the scores of all actions for B observations, shape (B, k + 1)."""
         whole, asked, candidates = self._parts(seen)
         which = asked.argmax(dim=1)
         found = torch.empty(len(seen), self.k + 1)
@@ -155,7 +163,10 @@ class Scores(nn.Module):
         return found
 
     def forward_critic(self, seen: torch.Tensor) -> torch.Tensor:
-        """Return the input of the value: of features of the warehouse and of all candidates."""
+        """Return the features from which the value function is computed, shape (B, 64).
+
+        They depend on the warehouse, the question and all candidates.
+        """
         whole, asked, candidates = self._parts(seen)
         mean, top = candidates.mean(dim=1), candidates.amax(dim=1)
         found: torch.Tensor = self.value(torch.cat([whole, asked, mean, top], dim=1))
@@ -169,7 +180,7 @@ class Scores(nn.Module):
 
 
 class ScoringPolicy(MaskableActorCriticPolicy):
-    """A policy of sb3-contrib whose scores of actions are those of `Scores`."""
+    """A policy of sb3-contrib in which `Scores` computes the scores of the actions."""
 
     def __init__(
         self,
@@ -193,12 +204,12 @@ class ScoringPolicy(MaskableActorCriticPolicy):
         )
 
     def networks(self) -> dict[str, Network]:
-        """Return what has been learned, by kind of question."""
+        """Return the networks learned so far, by kind of question."""
         return {one.kind: one.network() for one in self.mlp_extractor.scorers}
 
 
 def scores(policy: ScoringPolicy, seen: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Return the scores of all actions for flat observations, shape (B, k + 1)."""
+    """Return the scores of all actions for B flat observations, shape (B, k + 1)."""
     with torch.no_grad():
         found: np.ndarray[Any, Any] = policy.mlp_extractor.forward_actor(
             torch.as_tensor(seen, dtype=torch.float32)

@@ -1,7 +1,7 @@
 """Training of linear rules by CMA-ES, an evolution strategy without gradients.
 
 Every vector of weights defines a set of controllers. The value of a vector is the mean objective of
-runs with several seeds, which are the same for all vectors (common random numbers).
+runs with several seeds. The seeds are the same for all vectors (common random numbers).
 """
 
 from __future__ import annotations
@@ -39,24 +39,24 @@ TRAINED: dict[Problem, dict[str, str]] = {
     Problem.PSA: {"weights": "place"},
     Problem.TA: {"weights": "ta"},
 }
-"""For each problem, the parameters of its linear rule that are trained, each with the kind of
-question to which its weights apply."""
+"""For each problem, the trained parameters of its linear rule, each with the kind of question for
+which its weights are used."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A training task: what is simulated, which rules are trained, and for which objective.
+    """A training task: what is simulated, which rules are trained, and the objective.
 
     Attributes
     ----------
     layout, scenario, controllers
         Inputs of the simulation; the controllers decide all problems that are not trained.
     problems
-        Problems whose linear rules are trained; keys of `TRAINED`.
+        Problems whose linear or network rules are trained; keys of `TRAINED`.
     objective
         Weights by column of the footprint; the weighted sum of the columns is maximised.
     seeds
-        Seeds of the runs with which each vector of weights is evaluated.
+        Seeds of the runs by which rules are evaluated.
     set
         Further parameters by dotted key, as for `rmfs.simulate`.
 
@@ -89,13 +89,13 @@ class Task:
     def start(self) -> NDArray[np.float64]:
         """Return the default weights of the linear rules as one vector.
 
-        The weights for each kind of question are divided by the greatest of their absolute values.
+        The weights for each kind of question are scaled so that the largest absolute value is 1.
         """
         found = [list(default_weights(kind).values()) for kind in self._kinds()]
         return np.concatenate([np.array(one) / max(map(abs, one)) for one in found])
 
     def base(self) -> ControllerSettings:
-        """Return the controllers that decide the problems that are not trained."""
+        """Return the task's set of controllers before training, with the parameters in `set`."""
         overrides = [
             (key.split(".")[1:], value)
             for key, value in self.set.items()
@@ -104,7 +104,7 @@ class Task:
         return control.load(self.controllers, overrides)
 
     def settings(self, weights: NDArray[np.float64]) -> ControllerSettings:
-        """Return the set of controllers whose linear rules have these weights."""
+        """Return the set of controllers whose trained linear rules have the given weights."""
         base = self.base()
         choices, rest = dict(base.choices), weights.tolist()
         for name in self.problems:
@@ -120,11 +120,11 @@ class Task:
         return ControllerSettings("linear", told, choices)
 
     def worth(self, weights: NDArray[np.float64], seed: int) -> float:
-        """Simulate one run with linear rules of these weights and return its objective."""
+        """Simulate one run with linear rules of the given weights, and return its objective."""
         return self.value_of(self.settings(weights), seed)
 
     def value_of(self, settings: ControllerSettings, seed: int) -> float:
-        """Simulate one run and return its objective; a value that is not finite counts as 0."""
+        """Simulate one run and return its objective; columns that are not finite count as 0."""
         given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", IdleRuleWarning)  # some weight vectors are bad
@@ -145,11 +145,14 @@ class Trained:
     settings
         The trained controllers, which `rmfs.control.toml.to_toml` converts to a file.
     value, start_value
-        Mean objective over the training seeds, with the trained and with the default weights.
+        Mean objective over the task's seeds, after and before training.
     history
-        One row per generation: its number (`generation`), the best and the mean value of its
-        vectors (`best`, `mean`), the number of runs in all generations so far (`runs`), and the
-        wall time in s since the start of training (`wall_s`).
+        The course of training. `train` adds one row per generation: its number (`generation`), the
+        best and the mean value of its vectors (`best`, `mean`), the number of runs in all
+        generations so far (`runs`), and the wall time in s since the start (`wall_s`).
+        `rmfs.learning.ppo.train_network` adds one row per check: the number of decisions so far
+        (`steps`), the mean objective (`value`), and the wall and processor times in s since the
+        start (`wall_s`, `cpu_s`).
     """
 
     settings: ControllerSettings
@@ -173,15 +176,15 @@ def train(
     Parameters
     ----------
     generations, population
-        Number of generations, and of vectors of weights per generation; each vector is simulated
-        with all seeds.
+        Number of generations, and number of vectors of weights per generation. Each vector is
+        simulated with all seeds of the task.
     spread
-        Initial standard deviation of the weights. For comparison: for each kind of question, the
-        largest absolute value of the initial weights is 1.
+        Initial standard deviation of the weights. For each kind of question, the largest absolute
+        value of the initial weights is 1.
     seed
-        Seed of the evolution; the result does not depend on the number of processes.
+        Seed of the evolution strategy.
     jobs
-        Number of processes.
+        Number of processes; the result does not depend on it.
     told
         Function called with a line of text after each generation.
 
@@ -238,7 +241,7 @@ def named(trained: Trained, name: str, description: str) -> ControllerSettings:
 def _worth(
     executor: Executor | None, task: Task, sets: Sequence[NDArray[np.float64]]
 ) -> list[float]:
-    """Return the mean value of weight vectors over all seeds."""
+    """Return the value of each vector of weights: the mean objective over all seeds."""
     calls = [(weights, seed) for weights in sets for seed in task.seeds]
     each = map if executor is None else executor.map
     values = list(each(_one, [task] * len(calls), *zip(*calls, strict=True)))
@@ -250,7 +253,7 @@ def _one(task: Task, weights: NDArray[np.float64], seed: int) -> float:
 
 
 class _Here:
-    """An executor without processes: everything runs in this one."""
+    """A substitute for an executor if there is only one process."""
 
     def __enter__(self) -> None:
         return None

@@ -29,13 +29,18 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     computing time up to the next decision varies greatly between environments; with 8 or more
     environments per process, these differences average out.
 
-    The step after the last one of an episode ignores its action, starts the next episode and has
-    reward 0 (Gymnasium's mode `NEXT_STEP`). `info` contains the arrays `elapsed_s`, `now_s`,
-    `invalid` and `kind` (one of `kinds`, or empty at the end of an episode), each of shape (N,),
-    and `action_mask`, shape (N, actions). If episodes have just ended, `info` also contains their
-    footprints in the array `footprint`; the mask `_footprint` tells for which environments.
-    `reset(seed=s)` gives environment i the seed s + i, so that it behaves like a `DecisionEnv` with
-    that seed.
+    If an episode ends in a step, the next step ignores the action for this environment, starts its
+    next episode and returns reward 0 (Gymnasium's mode `NEXT_STEP`).
+
+    `info` contains the arrays `elapsed_s`, `now_s`, `invalid` and `kind`, each of shape (N,), and
+    `action_mask`, shape (N, actions). The elements of `kind` are kinds of question (see the
+    attribute `kinds`): each is the kind of the environment's next question, or empty at the end of
+    an episode. If episodes have just ended and runs are measured, `info` also contains the array
+    `footprint`, shape (N,), with the footprints of the ended runs; the mask `_footprint` is true
+    for their environments.
+
+    `reset(seed=s)` gives environment i the seed s + i. Each environment then behaves like a single
+    `DecisionEnv` with its seed.
 
     Parameters
     ----------
@@ -44,7 +49,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     workers
         Number of processes. Default: one per core, at most N.
     given
-        Arguments of the environments, as for `DecisionEnv`.
+        Arguments for creating each environment, as for `DecisionEnv`.
 
     Raises
     ------
@@ -88,7 +93,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: Any = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start a run in every environment."""
+        """Start a run in every environment; return the observations and `info`."""
         seeds: list[int | None]
         if seed is None or isinstance(seed, (int, np.integer)):
             seeds = [None if seed is None else int(seed) + i for i in range(self.num_envs)]
@@ -102,7 +107,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Make a decision in every environment, or start its next episode."""
+        """Carry out an action in every environment, or start its next episode if the last ended."""
         board = self._board.arrays
         board["action"][:] = actions
         for pipe in self._pipes:
@@ -118,16 +123,16 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
         )
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return which actions are possible, shape (N, actions)."""
+        """Return whether each action is possible in each environment, shape (N, actions)."""
         return self._board.arrays["action_mask"].copy()
 
     @property
     def busy_s(self) -> NDArray[np.float64]:
-        """Return the processor time of each process for the last step in s, shape (workers,)."""
+        """Return the processor time (s) of each process in the last step, shape (workers,)."""
         return self._board.arrays["busy_s"][: len(self._processes)].copy()
 
     def close_extras(self, **_: Any) -> None:
-        """End the processes."""
+        """Stop the worker processes."""
         for pipe in self._pipes:
             try:
                 pipe.send(("close", ()))

@@ -22,14 +22,17 @@ if TYPE_CHECKING:
 Shapes = dict[str, tuple[tuple[int, ...], str]]
 
 FEW_COLLECTIONS = 50_000
-"""Allocations between two garbage collections: many, as runs create few reference cycles."""
+"""Number of allocations between two garbage collections.
+
+It is large because runs create few reference cycles.
+"""
 
 RUNS_KEPT = 4
-"""Ended runs are freed whenever this number of runs per environment has begun."""
+"""Ended runs are freed each time this many runs per environment have begun."""
 
 
 def shapes_of(env: DecisionEnv) -> Shapes:
-    """Return shape and type of each input and output of an environment, by name."""
+    """Return the shape and data type of each input and output of an environment, by name."""
     space = env.observation_space
     parts: dict[str, Any] = dict(space.spaces) if isinstance(space, spaces.Dict) else {"": space}
     return {
@@ -48,14 +51,16 @@ def shapes_of(env: DecisionEnv) -> Shapes:
 
 @dataclass
 class Board:
-    """Inputs and outputs of N environments: one array per name, with a first axis of length N.
+    """Inputs and outputs of N environments: one array per name, with one row per environment.
 
     Attributes
     ----------
     shapes
-        Shapes and types for one environment, by name, as returned by `shapes_of`.
+        Shapes and data types for one environment, by name, as returned by `shapes_of`.
     buffers
-        Shared memory by name, from `multiprocessing.RawArray`.
+        Shared memory of each array, by name; created by `multiprocessing.RawArray`.
+    arrays
+        The arrays by name; they are views of the shared memory.
     """
 
     shapes: Shapes
@@ -64,7 +69,7 @@ class Board:
 
     @classmethod
     def made(cls, shapes: Shapes, count: int, context: Any) -> Board:
-        """Return a board with memory for `count` environments."""
+        """Create a board, including its shared memory, for `count` environments."""
         sizes = {
             name: max(int(np.prod(shape)) * np.dtype(kind).itemsize * count, 1)
             for name, (shape, kind) in shapes.items()
@@ -80,11 +85,11 @@ class Board:
         }
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave the arrays out: they are views of the memory."""
+        """Return the state without the arrays, which are views of the shared memory."""
         return {"shapes": self.shapes, "buffers": self.buffers}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Attach to the same memory."""
+        """Restore the arrays as views of the same shared memory."""
         self.__init__(**state)  # type: ignore[misc]
 
 
@@ -94,9 +99,11 @@ class Stand:
     Parameters
     ----------
     given
-        Arguments for creating environments.
+        Arguments for creating each environment, as for `DecisionEnv`.
+    board
+        The shared memory.
     places
-        Rows of the shared memory that belong to these environments.
+        Rows of the arrays in shared memory that belong to these environments.
     """
 
     def __init__(self, given: Mapping[str, Any], board: Board, places: range) -> None:
@@ -105,21 +112,24 @@ class Stand:
         self._first = places[0]
         self._over: set[int] = set()
         self._begun = 0
-        """Runs begun since those that have ended were last freed."""
+        """Number of runs begun since ended runs were last freed."""
 
     def reset(self, seeds: Mapping[int, int | None], options: Any) -> dict[int, Any]:
-        """Start a run in each environment."""
+        """Start a run in each environment, with seeds by row; None: a seed is drawn."""
         for place, seed in seeds.items():
             self._begin(place, seed, options)
         self._free()
         return {}
 
     def step(self) -> dict[int, Any]:
-        """Carry out the actions in shared memory; where a run has ended, start the next instead.
+        """Carry out the actions in shared memory, one per environment.
+
+        If the run of an environment ended in the last step, its next run is started instead.
 
         Returns
         -------
-        Footprints of the runs that this step has ended, by row.
+        dict
+            Footprints of the runs that have ended in this step, by row.
         """
         board, found, before_s = self._board, {}, process_time()
         for place, env in self._envs.items():
@@ -149,10 +159,10 @@ class Stand:
             self._free()
 
     def _free(self) -> None:
-        """Free the runs that have ended, and leave out the present ones in later collections.
+        """Free ended runs, and exclude the current runs from later garbage collections.
 
-        Runs contain cycles, so that only the garbage collector frees them. The objects of the
-        present runs live long and need not be scanned repeatedly.
+        Runs contain reference cycles, so only the garbage collector can free them. Scanning the
+        current runs repeatedly would be useless, because their objects live long.
         """
         self._begun = 0
         gc.unfreeze()
@@ -172,7 +182,7 @@ class Stand:
 
 
 def work(given: Mapping[str, Any], board: Board, places: range, pipe: Connection) -> None:
-    """Carry out commands from a pipe until it is closed; this is the main function of a process."""
+    """Run a worker process: carry out commands from a pipe up to `close` or the end of the pipe."""
     try:
         stand = Stand(given, board, places)
         pipe.send(("made", None))

@@ -1,8 +1,8 @@
-"""What a run reports: footprint, tables, heat maps, traces and their independent check.
+"""Results of a run: footprint, tables, heat maps and traces, and an independent check of traces.
 
 `Recorder` observes a run. From its logs, `tables` makes the tables that `dictionary` describes, and
-`measures` computes the footprint; `folder` writes and reads run folders; `checker` proves that the
-motion in a trace is safe.
+`measures` computes the footprint; `folder` writes and reads run folders; `checker` checks whether
+the motion in a trace is safe.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ def series(run: Measured) -> pd.DataFrame:
 def decisions(run: Measured) -> pd.DataFrame:
     """Return the table `decisions` of a run.
 
-    It covers the measured time and has one row per call in which a controller made decisions
-    without an optimiser, and one row per question to an optimiser.
+    It covers the measured time. There is one row for each call in which a controller made decisions
+    by itself, that is, without an optimiser, and one row for each question to an optimiser.
     """
     from rmfs.measure import tables
 

@@ -32,7 +32,7 @@ class Measure(Observer):
     columns: ClassVar[Sequence[Column]] = ()
 
     def footprint(self, run: EndedRun) -> Mapping[str, Any]:
-        """Return the values of the columns by name, for the measured time.
+        """Return the value of each column, by its name, for the measured time.
 
         Parameters
         ----------

@@ -1,7 +1,7 @@
 """The proven upper bound on the units picked per hour in a run, computed by `rmfs.solvers`.
 
-Importing this module does not import `rmfs.solvers`: like a controller that uses an optimiser, the
-function that computes the bound is referred to by its name, and imported when it is needed.
+Importing this module does not import `rmfs.solvers`. The function that computes the bound is given
+by its name and imported only when it is needed.
 """
 
 from __future__ import annotations
@@ -22,18 +22,21 @@ BOUND = "rmfs.solvers.run_bound:units_per_h_bound"
 
 
 class BoundExceededWarning(UserWarning):
-    """A run exceeded its proven bound: there is a defect in the simulator or in the proof."""
+    """A run exceeded its proven bound, so there is a defect in the simulator or in the proof."""
 
 
 def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration_s: float) -> float:
-    """Return an upper bound on the units picked per hour in any run of a warehouse (docs: bounds).
+    """Return an upper bound on the units picked per hour in any run of a warehouse.
+
+    The bound is infinite if some handling takes no time. The page `docs/bounds.md` contains the
+    proof.
 
     Parameters
     ----------
     times
-        The traffic model, which knows lower bounds of travel times.
+        Travel times without hindrance, which are lower bounds on the actual travel times.
     duration_s
-        Length of the time in which units are counted, in s.
+        Length of the period in which units are counted, in s.
     """
     module, _, name = BOUND.partition(":")
     bound: float = getattr(importlib.import_module(module), name)(layout, skus, times, duration_s)
@@ -41,13 +44,13 @@ def units_per_h_bound(layout: Layout, skus: SkuSet, times: TravelTimes, duration
 
 
 def at_best(layout: Layout, staff: Staff | None) -> Layout | None:
-    """Return a copy of the layout whose times per unit are the shortest possible with `staff`.
+    """Return the layout with the shortest times per unit that the pickers in `staff` can achieve.
 
     Returns
     -------
     Layout or None
-        The layout itself if `staff` is None (there are no pickers); None if the times per unit at a
-        pick station can be arbitrarily short.
+        A copy with changed pick stations, or the layout itself if `staff` is None (there are no
+        pickers). None if the time per unit at a pick station can be arbitrarily short.
     """
     if staff is None:
         return layout

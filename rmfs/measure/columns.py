@@ -32,18 +32,18 @@ class Column:
     Attributes
     ----------
     name
-        Name of the column. Most names of times, lengths, rates and shares end with the unit: `_s`,
-        `_m`, `_per_h`, `_share` (0 to 1).
+        Name of the column. Most names of times, lengths, rates and shares end with a suffix for the
+        unit: `_s`, `_m`, `_per_h`, or `_share` (from 0 to 1).
     dtype
         The pandas type of the column, one of `DTYPES`.
     unit
         Unit as text, such as "s" or "orders"; empty for names and identifiers.
     meaning
-        Definition; if cells of the column can be empty, it states when.
+        Definition of the values. If cells can be empty, the definition also states when.
     measured
-        Whether its values depend on the machine, so that they are not reproducible.
+        Whether the values depend on the machine and are therefore not reproducible.
     better
-        "more" if larger values are better for a warehouse, "less" if smaller ones are, and
+        "more" if larger values are better for a warehouse, "less" if smaller values are better, and
         "neither" if the column is only descriptive.
     """
 
@@ -60,7 +60,7 @@ class Column:
         return self.dtype in NUMBERS
 
     def to_table(self) -> dict[str, Any]:
-        """Return all attributes as values for JSON."""
+        """Return all attributes as a dictionary that can be written as JSON."""
         return asdict(self)
 
     @classmethod

@@ -1,8 +1,8 @@
 """The data dictionary: every column that a run writes, with its unit and meaning.
 
-Columns are declared where they are computed: those of the footprint by measures, those of other
-tables in the modules of the tables. They are combined here, and the documentation page is generated
-from them, so that every column is described.
+Columns are declared where they are computed: those of the footprint by the measures, and those of
+the other tables in the modules of these tables. This module combines all declarations. The
+documentation page is generated from them, so that it describes every column.
 
 "The measured time" is the time after the warm-up, of length `duration_s`. Unless stated otherwise,
 counts, means and rates cover only the measured time.
@@ -42,7 +42,7 @@ _PLACES = {name: place for place, name in enumerate(PROMISED)}
 
 
 def footprint_columns(measures: Iterable[Measure | type[Measure]]) -> tuple[Column, ...]:
-    """Return the columns that these measures compute, in the order of the footprint."""
+    """Return the columns that the given measures compute, in the order of the footprint."""
     declared = (column for measure in measures for column in measure.columns)
     return tuple(sorted(declared, key=lambda column: _PLACES.get(column.name, len(_PLACES))))
 
@@ -60,7 +60,7 @@ def names(table: str) -> list[str]:
 
 
 def reproducible(table: str) -> list[str]:
-    """Return the names of a table's columns whose values do not change if a run is repeated."""
+    """Return the names of those columns of a table that are the same when a run is repeated."""
     return [column.name for column in TABLES[table] if not column.measured]
 
 
@@ -76,7 +76,10 @@ def learn(columns: Iterable[Column]) -> None:
 
 
 def footprint_column(name: str) -> Column | None:
-    """Return a column of the footprint or a registered one (see `learn`); None if unknown."""
+    """Return the column of the given name, or None if there is no such column.
+
+    The column is one of the footprint or one that has been registered (see `learn`).
+    """
     return next((one for one in FOOTPRINT if one.name == name), _LEARNT.get(name))
 
 
@@ -88,16 +91,17 @@ def learnt() -> list[Column]:
 def better_of(column: str) -> Better:
     """Return whether "more" or "less" is better in a column of the footprint, all else being equal.
 
-    For numbers of robots, pods and stations, the result is "less". It is "neither" for all other
-    inputs, for counts that have no value in themselves (tasks, trips, decisions), for shares that
-    may be high for good or bad reasons (busy robots), and for unknown columns.
+    For the numbers of robots, pods and stations, the result is "less". It is "neither" for all
+    other columns that describe inputs of the run, for counts that have no value in themselves (such
+    as tasks, trips and decisions), for shares that may be high for good or bad reasons (such as the
+    share of busy robots), and for unknown columns.
     """
     found = footprint_column(column)
     return NEITHER if found is None else found.better
 
 
 def markdown() -> str:
-    """Return the dictionary as a Markdown page, one section per table."""
+    """Return the dictionary as a Markdown page with one section per table."""
     lines = [
         "# Data dictionary",
         "",

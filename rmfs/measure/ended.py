@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Measured(Protocol):
-    """A finished run, from which tables are made."""
+    """The data of a finished run from which its tables are made."""
 
     @property
     def names(self) -> tuple[str, str, str]:
@@ -77,7 +77,7 @@ class Recorded(Measured, Protocol):
 
     @property
     def notes(self) -> dict[str, list[str]]:
-        """For each input imported from files of another system, notes on the import."""
+        """Notes on the import of inputs from files of another system, by input."""
 
     @property
     def pacing(self) -> str:
@@ -89,7 +89,7 @@ class Recorded(Measured, Protocol):
 
     @property
     def interventions(self) -> Sequence[tuple[float, Choice]]:
-        """For each interactive exchange of a controller, its time (s) and the new controller."""
+        """Interactive exchanges of controllers: for each, its time (s) and the new controller."""
 
     @property
     def slow_robots(self) -> list[tuple[int, int, int, float]]:
@@ -97,11 +97,11 @@ class Recorded(Measured, Protocol):
 
     @property
     def trace(self) -> dict[str, NDArray[Any]]:
-        """Every piece of motion; available only if recording was requested."""
+        """All pieces of motion, one array per column; available only if a trace was requested."""
 
     @property
     def events(self) -> EventLog | None:
-        """All events except motion; None unless recording of the trace was requested."""
+        """All events except motion; None if no trace was requested."""
 
 
 class EndedRun:
@@ -122,7 +122,7 @@ class EndedRun:
     recorder
         The data recorded during the run, warm-up included.
     layout, world
-        The layout, and the world as it was at the end of the run.
+        The layout, and the state of the warehouse at the end of the run.
     report
         Result of the trace checker; None if it did not run.
     """
@@ -140,7 +140,7 @@ class EndedRun:
 
     @cached_property
     def logs(self) -> Logs:
-        """The recorded data as frames."""
+        """The recorded data as data frames."""
         return Logs(self.recorder)
 
     @cached_property
@@ -149,5 +149,11 @@ class EndedRun:
         return Made(self.logs)
 
     def handled(self, column: str) -> int:
-        """Return the sum of a column of counts, such as `units_picked`, in the table `stations`."""
+        """Return the sum over all stations of a count in the table `stations`.
+
+        Parameters
+        ----------
+        column
+            Column of the table, such as `units_picked`.
+        """
         return int(self.tables["stations"][column].sum())

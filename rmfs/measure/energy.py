@@ -14,26 +14,27 @@ if TYPE_CHECKING:
     from rmfs.world.batteries import Batteries
 
 WH = 3600.0
-"""Joules of a watt-hour."""
+"""Joules per watt-hour."""
 
 
 class EnergyLog:
-    """Energy drawn by robots, if the scenario models it.
+    """Records the energy that robots draw, if the scenario models energy.
 
     When a visit in which units were picked ends, the energy that the robot has drawn since the end
-    of its previous such visit is divided equally among the units picked. It includes the energy for
-    driving, waiting, storing the previous pod, and the way to a charger.
+    of its previous such visit is divided equally among these units. This includes the energy for
+    driving, waiting, storing the previous pod, and any trip to a charger.
 
     Attributes
     ----------
     samples
-        After each minute, in J: energy drawn and energy charged by all robots since the end of the
-        warm-up, and the mean and the minimum energy in a battery, nan without batteries.
+        The state at the end of each minute, in J: the energy drawn and the energy charged by all
+        robots since the end of the warm-up, and the mean and the minimum of the energy in their
+        batteries (nan without batteries).
     per_order
         Energy drawn for the units that have been picked for each order, in J, by index of the
         order.
     final
-        What `Traffic.energy` returns at the end of the run; empty if energy is not modelled.
+        Result of `Traffic.energy` at the end of the run; empty if energy is not modelled.
     batteries
         The robots' batteries, if there are any.
     """
@@ -87,7 +88,13 @@ class EnergyLog:
                 self.final["level_j"] = np.full(len(self.final["level_j"]), nan)
 
     def per_interval_wh(self, which: int) -> NDArray[np.float64]:
-        """Return the energy drawn (`which` 0) or charged (1) by all robots each minute, in Wh."""
+        """Return the energy drawn or charged by all robots in each minute, in Wh.
+
+        Parameters
+        ----------
+        which
+            0 for the energy drawn, 1 for the energy charged.
+        """
         values = [0.0, *(sample[which] for sample in self.samples)]
         wh: NDArray[np.float64] = np.diff(np.array(values)) / WH
         return wh

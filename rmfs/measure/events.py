@@ -102,7 +102,7 @@ Unit = tuple[int, int]
 
 
 class _Bound:
-    """Of a pick task: units bound to its pod, those picked or given back, and how many are left."""
+    """The units of a pick task: those bound to its pod, those picked or released, and the rest."""
 
     __slots__ = ("bound", "left", "picked", "task")
 
@@ -142,7 +142,7 @@ class EventLog(Observer):
     Attributes
     ----------
     details
-        The texts of the column `detail`, which contains their indices.
+        The texts to which the column `detail` refers by their indices.
     """
 
     def __init__(self) -> None:
@@ -163,7 +163,7 @@ class EventLog(Observer):
         return dict(zip(COLUMNS, rows.T, strict=True))
 
     def run_started(self, run: Observed) -> None:
-        """Record the stock and the levels of batteries."""
+        """Record the initial stock and the initial levels of batteries."""
         self._world = run.world
         contained = run.world.inventory.contained
         for sku, pod in np.argwhere(contained).tolist():
@@ -329,7 +329,7 @@ class EventLog(Observer):
 
 
 def as_table(log: EventLog) -> dict[str, Any]:
-    """Return the events as they are written to files, with `kind` and `detail` as words."""
+    """Return the columns of the events as written to files, with `kind` and `detail` as text."""
     import pandas as pd
 
     columns = log.columns()

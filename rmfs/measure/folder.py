@@ -58,16 +58,17 @@ def write_run(
     Raises
     ------
     InputError
-        If the folder cannot be written or contains something other than a run.
+        If the folder cannot be written, or if a folder of this name contains something other than a
+        run.
     """
     with reserved(target) as folder:
         fill(folder, run, report=report, trace=trace, inputs=inputs)
 
 
 def reserved(target: Path, *, force: bool = True) -> AbstractContextManager[Path]:
-    """Return a context that provides a temporary folder in which to write a run.
+    """Return a context manager that provides a temporary folder in which to write a run.
 
-    When the context ends without an error, this folder becomes the run folder `target`; see
+    If its context ends without an error, the temporary folder becomes the run folder `target`; see
     `rmfs.files.replacing_folder`.
 
     Parameters
@@ -87,7 +88,7 @@ def fill(
     inputs: Mapping[str, str] | None = None,
     tables: Mapping[str, pd.DataFrame] | None = None,
 ) -> None:
-    """Write a run's files into an existing folder; for further parameters, see `write_run`.
+    """Write the files of a run into an existing folder; for other parameters, see `write_run`.
 
     Parameters
     ----------
@@ -137,7 +138,7 @@ def write_csv(run: RunFolder) -> list[Path]:
 
 
 def plain(value: Any) -> Any:
-    """Return `value` with strings in place of infinite numbers and nan, for JSON."""
+    """Return `value` in a form for JSON: infinite numbers and nan are replaced by strings."""
     if isinstance(value, dict):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -168,7 +169,7 @@ class RunFolder(Results):
 
     @property
     def told(self) -> Told:
-        """The entries that `run.json` must have, as attributes with checked types."""
+        """The entries of `run.json` whose types are checked, as attributes."""
         return Told.model_validate(self.parameters)
 
     @property
@@ -188,8 +189,8 @@ class RunFolder(Results):
         Raises
         ------
         InputError
-            If the run was made without a trace, or its file is truncated or has another version of
-            the format.
+            If the run was made without a trace, or the trace file is truncated or has another
+            version of the format.
         """
         return read_motion(self.path)
 
@@ -200,17 +201,19 @@ class RunFolder(Results):
 
     @property
     def layout(self) -> Layout:
-        """The layout of a run with a trace; raises the same errors as `trace`."""
+        """The layout, which is stored with the trace; raises the same errors as `trace`."""
         return read_layout(self.path)
 
     def check(self) -> CheckReport:
-        """Verify with the independent checker that the motion is safe.
+        """Check with the independent checker whether the motion is safe.
+
+        Gaps, jumps and impossible times in the trace raise no error but are reported as findings.
 
         Raises
         ------
         InputError
             As for `trace`, and if the trace refers to robots, waypoints, pods or kinds of motion
-            that do not exist. Gaps, jumps and impossible times raise no error but are reported.
+            that do not exist.
         """
         from rmfs.measure.checker import Slow, check
 
@@ -219,7 +222,7 @@ class RunFolder(Results):
         return check(self.layout, trace, until_us=self.told.end_us, slow=slow)
 
     def replayed(self) -> tuple[Layout, pd.DataFrame, pd.DataFrame]:
-        """Return layout, motion and events, checked against each other, as a replay needs them.
+        """Return the layout, the motion and the events, validated as required for a replay.
 
         Raises
         ------
@@ -244,7 +247,7 @@ class RunFolder(Results):
         return self
 
     def table(self, name: str) -> pd.DataFrame:
-        """Read one table.
+        """Read one table of the run.
 
         Raises
         ------
@@ -262,7 +265,7 @@ class RunFolder(Results):
 
 
 def load_run(path: str | Path) -> RunFolder:
-    """Load a run folder; its tables are read when they are used.
+    """Load a run folder; a table is read only when it is accessed.
 
     Raises
     ------

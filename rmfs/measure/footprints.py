@@ -49,7 +49,7 @@ def footprint(run: EndedRun, measures: Sequence[Measure]) -> pd.DataFrame:
 def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd.DataFrame]:
     """Return all tables of a run by name.
 
-    In the footprint, the column `collisions` is empty without `report`.
+    In the footprint, the column `collisions` is empty if no `report` is given.
     """
     return some_tables(run, MAKERS, report)
 
@@ -59,7 +59,7 @@ def some_tables(
 ) -> dict[str, pd.DataFrame]:
     """Return the footprint and the tables called `names`, by name.
 
-    In the footprint, the column `collisions` is empty without `report`.
+    In the footprint, the column `collisions` is empty if no `report` is given.
     """
     ended = EndedRun(run, report)
     made = {"footprint": footprint(ended, run.measures)}

@@ -62,7 +62,7 @@ class Log:
         self._rows += self._pack(*values)
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """Return a copy of each column, by name, shape (rows,), with integers as int64."""
+        """Return a copy of each column by name, as an array of shape (rows,); integers as int64."""
         rows = np.frombuffer(self._rows, self._dtype)
         kinds = {"i": np.dtype(np.int64)}
         # a view would prevent the block from growing

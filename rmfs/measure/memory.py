@@ -9,8 +9,8 @@ from pathlib import Path
 def peak_rss_mb() -> float:
     """Return the peak resident memory of this process in MB (10^6 bytes); nan if unknown.
 
-    It is read from the kernel's high-water mark if available, because `getrusage` may return the
-    peak of the process that started this one.
+    The value is read from the kernel's high-water mark if available, because `getrusage` may return
+    the peak of the process that started this one.
     """
     try:
         status = Path("/proc/self/status").read_text(encoding="ascii")

@@ -14,20 +14,20 @@ if TYPE_CHECKING:
 
 
 class PackingLog:
-    """Parcels (orders on their way to packing) and their totes; empty logs without packing.
+    """Records parcels (orders on their way to packing) and their totes; empty without packing.
 
     Attributes
     ----------
     given
         The scenario's packing parameters; None without packing.
     parcels
-        Orders packed; after the end of the run, also orders that are not packed yet but of which at
-        least one tote has left its pick station. Rows as in `parcel_row`.
+        Packed orders. After the end of the run, also the orders that are not yet packed, if at
+        least one of their totes has left its pick station. Rows are as in `parcel_row`.
     totes
         Totes of these orders; `consolidated_s` is the time at which the last tote of the order
         reached the put wall.
     held
-        Periods in which a tote could not leave its pick station: begin and end in s.
+        Periods in which a tote could not leave its pick station, with begin and end in s.
     """
 
     def __init__(self) -> None:

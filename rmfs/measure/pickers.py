@@ -12,16 +12,16 @@ if TYPE_CHECKING:
 
 
 class PickerLog:
-    """Presence of pickers, and units that they handled; empty logs in scenarios without pickers.
+    """Records pickers' presence and the units that they handled; empty without pickers.
 
     Attributes
     ----------
     staff
-        All pickers of the scenario; None if it has none.
+        All pickers of the scenario; None if there are no pickers.
     units
-        One row per picked unit, in order of time.
+        One row per picked unit, in chronological order.
     presence
-        Periods in which a picker was at a station: begin and end in s.
+        Periods in which a picker was at a station, with begin and end in s.
     """
 
     def __init__(self) -> None:

@@ -87,7 +87,7 @@ def _more(run: Results, what: str, tier: int, column: str) -> dict[str, Any]:
 
 
 def save(run: Results, what: str, path: Path) -> None:
-    """Save a plot as PNG, SVG or PDF; equal runs give equal files.
+    """Save a plot as PNG, SVG or PDF; identical runs give identical files.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The contents of `run.json`: parameters, versions, machine and hashes of a run."""
+"""The contents of `run.json`: inputs and parameters of a run, versions, and the machine."""
 
 from __future__ import annotations
 
@@ -70,7 +70,8 @@ def describe(
     report
         Result of the trace checker, if it ran.
     inputs
-        Layout, scenario and controllers as specified by the user (names or paths).
+        Layout, scenario and controllers as specified by the user (names or paths). Default: the
+        names in `run`.
     """
     table = run.controllers.to_table()
     names = [name.partition(MARK)[0] if run.interventions else name for name in run.names]
@@ -136,8 +137,8 @@ def source(part: str, given: str) -> dict[str, Any]:
     part
         A key of `KINDS`.
     given
-        Name or path of the input. If it leads to no file, it is returned as the name, and file and
-        SHA-256 are None.
+        Name or path of the input. If no such file is found, `given` is returned as the name, and
+        file and SHA-256 are None.
     """
     try:
         path = instances.locate(KINDS[part], given)
@@ -172,7 +173,7 @@ def layout_parameters(
     Raises
     ------
     InputError
-        If the file cannot be read, or its parameters are invalid.
+        If the layout file cannot be read, or its parameters are invalid.
     """
     try:
         path = instances.locate("layouts", given)
@@ -212,8 +213,8 @@ def version() -> str:
 def commit() -> dict[str, Any]:
     """Return the commit of the checkout that this code runs from, and whether it is modified.
 
-    Changes in `results` are ignored, so that the code does not count as modified once a table has
-    been published. If rmfs is installed from a wheel, both values are None, even if the virtual
+    Changes in the folder `results` are ignored, so that publishing a table there does not mark the
+    code as modified. If rmfs is installed from a wheel, both values are None, even if the virtual
     environment lies in a repository.
     """
     here = Path(__file__)

@@ -39,32 +39,32 @@ TASKS = tuple(task.kind for task in tasks.TASKS)
 
 
 class Recorder(Observer):
-    """The recorded data from which a run's tables are made.
+    """Records the data from which a run's tables are made.
 
     Attributes
     ----------
     start_s, end_s
         Start and end of the measured time, in s since the start of the run.
     order_stream, bundle_stream
-        The orders, or bundles, that were read from a file; None if the scenario draws them.
+        The orders and bundles read from a file; None if the scenario generates them.
     units
         Picked units.
     lines
-        Finished order lines: `time_s` is when the pick of the last unit started, `end_s` when its
-        handling ended, and `robot` brought its pod.
+        Finished order lines. For the last unit of the line, `time_s` is when its pick started,
+        `end_s` when its handling ended, and `robot` the robot that brought its pod.
     orders
         Completed and cancelled orders; rows as in `order_row`.
     open_orders
         Orders neither completed nor cancelled, whether assigned to a station or not, by index.
     bundles
-        Stored bundles; rows as in `bundle_row`, with the robot as additional last column.
+        Stored bundles; rows as in `bundle_row`, with the robot as an additional last column.
     open_bundles
         Bundles not yet stored, by index.
     visits
-        Visits to stations; `pod` is -1 if the robot carried none, and `end_s` is nan if the visit
+        Visits to stations; `pod` is -1 if the robot carried no pod, and `end_s` is nan if the visit
         was still in progress at the end of the run.
     busy
-        Periods in which stations were busy with a unit, a bundle or a robot.
+        Periods in which stations were busy, for example with a unit, a bundle or a charging robot.
     tasks
         Tasks started; `kind` is an index into `TASKS`, or a larger number for visits to stations
         other than pick and replenishment stations.
@@ -76,14 +76,15 @@ class Recorder(Observer):
     problems
         Decision problems, in the order in which they first occur in `calls`.
     asked
-        Number and wall time (s) of all calls of controllers since the warm-up, by decision problem.
+        By decision problem, the number of calls of its controller since the end of the warm-up, and
+        their total wall time (s).
     questions
         Questions to optimisers, in order.
     solutions
-        Solutions that optimisers found, as text, by number of the question.
+        Solutions that optimisers found, as JSON text, by the number of the question.
     by_rule
-        For each decision problem, number of decisions since the warm-up that controllers with
-        optimisers made by their own rule.
+        By decision problem, how many decisions its controller has made by its own rule since the
+        end of the warm-up, although it has an optimiser.
     switches
         Events at which a station was switched on or off.
     early_trips
@@ -192,7 +193,7 @@ class Recorder(Observer):
         self._before = self._order_counts()
 
     def run_ended(self, time_s: float) -> None:
-        """Store what `traffic` has counted, and record what is still in progress."""
+        """Store the counts of `traffic`, and record visits and other periods still in progress."""
         self.end_s = time_s
         if not self.samples or self.samples[-1][0] < time_s:
             self.sampled(time_s)
@@ -218,7 +219,7 @@ class Recorder(Observer):
         return {"order_redraws": world.order_redraws, "orders_short": world.orders_short}
 
     def sampled(self, time_s: float) -> None:
-        """Record the fleet's totals of motion, and its energy."""
+        """Record the fleet's distances, times in each state, and energy up to now."""
         totals = {name: float(values.sum()) for name, values in self.traffic.motion().items()}
         self.samples.append((time_s, totals))
         self.energy.sampled()
@@ -237,7 +238,7 @@ class Recorder(Observer):
         del self.open_orders[order.index]
 
     def tote_held(self, station: int, from_s: float, to_s: float) -> None:
-        """Record how long a tote could not leave its station."""
+        """Record the period in which a tote could not leave its station."""
         self.packing.held.add(station, from_s, to_s)
 
     def order_packed(self, parcel: Parcel) -> None:
@@ -264,7 +265,7 @@ class Recorder(Observer):
         self.pickers.handled(handled)
 
     def picker_left(self, picker: int, station: int, from_s: float, to_s: float) -> None:
-        """Record how long a picker was present."""
+        """Record the period in which a picker was at a station."""
         self.pickers.presence.add(picker, station, from_s, to_s)
 
     def line_picked(self, time_s: float, order: Order, sku: int, units: int) -> None:
@@ -294,7 +295,7 @@ class Recorder(Observer):
         self.energy.left(station, robot)
 
     def station_busy(self, station: int, from_s: float, to_s: float) -> None:
-        """Record how long a station was busy."""
+        """Record the period in which a station is busy."""
         self.busy.add(station, from_s, to_s)
         self._busy_until[station] = to_s
 
@@ -307,7 +308,7 @@ class Recorder(Observer):
         self.lifts.add(time_s, pod, robot)
 
     def decision(self, problem: str, time_s: float, wall_s: float, decisions: int) -> None:
-        """Count a call of a controller and its wall time; record the call if `decisions` > 0."""
+        """Count a controller's call, add its wall time, and record the call if `decisions` > 0."""
         try:
             asked = self.asked[problem]
         except KeyError:
@@ -328,12 +329,15 @@ class Recorder(Observer):
         self.questions.append(call)
 
     def optimiser_answered(self, call: Call) -> None:
-        """Record the solution, if any; `call` holds how many of its decisions were applied."""
+        """Record the solution, if there is one.
+
+        How many of the proposed decisions are applied is counted in `call`.
+        """
         if call.solution is not None:
             self.solutions[call.number] = to_text(call.solution)
 
     def station_activated(self, time_s: float, station: int, active: bool) -> None:
-        """Record the switch."""
+        """Record that a station was switched on or off."""
         self.switches.add(time_s, station, active)
 
 

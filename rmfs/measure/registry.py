@@ -1,4 +1,4 @@
-"""Finds the measures that users ask for.
+"""Finds the classes of the measures that users specify.
 
 A measure can be given as a class, as a reference (`module:Class` or `path/to/file.py:Class`), or
 by name if an installed distribution has an entry point of this name in the group `rmfs.measures`.
@@ -80,8 +80,8 @@ def find_all(given: Iterable[str | type[Measure]]) -> list[type[Measure]]:
 def described(measures: Iterable[type[Measure]]) -> list[dict[str, Any]]:
     """Describe users' measures, each by its name, reference, hash of the source file, and columns.
 
-    The reference is None for a measure that cannot be imported elsewhere because it was defined in
-    a notebook, for example.
+    The reference is None for a measure that cannot be imported elsewhere, for example because it
+    was defined in a notebook.
     """
     told = []
     for measure in measures:

@@ -35,7 +35,7 @@ class Replay:
 
     @property
     def size_mb(self) -> float:
-        """Size of the page in megabytes; a notebook that shows it grows by about as much."""
+        """Size of the page in megabytes; displaying it enlarges a notebook by about as much."""
         return self.path.stat().st_size / 1e6
 
     def _repr_html_(self) -> str:

@@ -65,11 +65,11 @@ class Results(ABC):
         Raises
         ------
         InputError
-            If `path` is already a run folder and `force` is False, or if it cannot be written.
+            If `path` is already a run folder and `force` is False, or the folder cannot be written.
         """
 
     def summary(self) -> Summary:
-        """Return the main figures, which display themselves at a prompt and in a notebook."""
+        """Return the main figures, formatted for display at a prompt or in a notebook."""
         from rmfs.measure.summary import summarised
 
         return summarised(self.footprint)
@@ -110,8 +110,8 @@ class Results(ABC):
         Returns
         -------
         Replay
-            The page. Its attribute `path` is the file. Functions that take a path, such as Python's
-            `open`, also take the page itself.
+            The page. Its attribute `path` is the file. The object itself can also be passed to
+            functions that take a path, such as Python's `open`.
 
         Raises
         ------

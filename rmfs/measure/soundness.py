@@ -1,9 +1,9 @@
 """Validates traces that were read from files.
 
-A trace file may have been written or edited by anybody. The functions of this module raise an error
-with a message of one line if a column has the wrong type, a value refers to something that does not
-exist (such as a robot), or a time or another value is impossible. They do not verify whether the
-motion is safe: this is the task of the checker.
+A trace file may have been written or edited by anyone. The functions of this module raise an error
+with a one-line message if a column has the wrong type, a value refers to something that does not
+exist (such as a robot), or a time or another value is impossible. They do not verify that the
+motion is safe; this is the task of the checker.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ def require_motion(path: Path, motion: pd.DataFrame, layout: Layout, end_us: int
     path
         The file, for messages.
     end_us
-        End of the run; no motion may start later than `AFTER_US` after it.
+        End of the run; no motion may start more than `AFTER_US` (one day) after it.
 
     Raises
     ------

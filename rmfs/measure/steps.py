@@ -36,21 +36,21 @@ class Steps:
 
     @classmethod
     def between(cls, begin_s: ArrayLike, end_s: ArrayLike) -> Steps:
-        """Return, as a function of time, how many intervals have begun and not yet ended.
+        """Return the number of intervals in progress as a function of time.
 
-        An interval whose end is nan never ends.
+        The intervals last from `begin_s` to `end_s`; an interval whose end is nan never ends.
         """
         begins, ends = np.asarray(begin_s, np.float64), np.asarray(end_s, np.float64)
         sign = np.concatenate([np.ones(len(begins)), -np.ones(len(ends))])
         return cls(np.concatenate([begins, ends]), sign)
 
     def positive(self) -> Steps:
-        """Return the function that is 1 where this one is above 0, and 0 elsewhere."""
+        """Return a function that is 1 where this function is positive, and 0 elsewhere."""
         above = (self._values > 0).astype(np.float64)
         return Steps(self._times, np.diff(above), above[0])
 
     def at(self, time_s: ArrayLike) -> Floats:
-        """Return the values just after each time, in the shape of `time_s`."""
+        """Return the values just after the given times, as an array of the shape of `time_s`."""
         return self._values[np.searchsorted(self._times, time_s, side="right")]
 
     def mean(self, begin_s: float, end_s: float) -> float:
@@ -72,7 +72,7 @@ class Steps:
 
 
 def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
-    """Return the total time spent within intervals up to each time in `at_s`, in s.
+    """Return, for each time in `at_s`, the total length of the intervals up to then, in s.
 
     The intervals last from `begin_s` to `end_s`; they must be disjoint and sorted by start.
     """
@@ -85,9 +85,9 @@ def covered(begin_s: Floats, end_s: Floats, at_s: Floats) -> Floats:
 
 
 def counts(time_s: ArrayLike, edges_s: Floats) -> NDArray[np.int64]:
-    """Count the events at `time_s` that fall into each interval (edge k, edge k + 1].
+    """Return the number of events at `time_s` in each interval (edges_s[k], edges_s[k + 1]].
 
-    The first interval also includes edge 0.
+    The first interval also includes edges_s[0].
     """
     times = np.sort(np.asarray(time_s, np.float64))
     below = np.searchsorted(times, edges_s, side="right")

@@ -1,4 +1,4 @@
-"""The entries of `run.json` that are checked when a run is loaded; the file has others."""
+"""The entries of `run.json` that are checked when a run is loaded; its other entries are not."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class _Told(pydantic.BaseModel):
 
 
 class Source(_Told):
-    """The layout, scenario or controllers of a run; only the name is checked."""
+    """The entry for the layout, scenario or controllers of a run; only its name is checked."""
 
     name: str
 
 
 class OwnColumn(_Told):
-    """A column of a user's measure."""
+    """The declaration of a column of a user-defined measure."""
 
     name: str
     dtype: str = Field(pattern="|".join(DTYPES))
@@ -42,7 +42,7 @@ class OwnColumn(_Told):
 
 
 class OwnMeasure(_Told):
-    """A user's measure."""
+    """A user-defined measure."""
 
     columns: list[OwnColumn]
 
@@ -53,8 +53,8 @@ class Told(_Told):
     Attributes
     ----------
     slow_robots
-        Periods in which a robot was slow: the robot, start and end (us), and the share of the top
-        speed to which it was limited; see `rmfs.measure.checker.Slow`.
+        Periods in which a robot was slow. Each is a tuple of the robot, the start and end in us,
+        and the robot's speed limit as a share of its top speed; see `rmfs.measure.checker.Slow`.
     """
 
     layout: Source

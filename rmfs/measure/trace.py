@@ -1,9 +1,9 @@
 """The files of a trace and the versions of their formats.
 
-`trace.parquet` contains every piece of motion, `events.parquet` all other events, and `layout.json`
-the explicit layout. Positions at any time can be computed from them alone; checking or replaying a
-run also needs other files of its folder, such as `run.json`. The page on the trace format describes
-the three files.
+`trace.parquet` contains every motion of the robots, `events.parquet` all other events, and
+`layout.json` the explicit layout. These three files suffice to compute positions at any time;
+checking or replaying a run also requires other files of the run folder, such as `run.json`. The
+page on the trace format describes the three files.
 """
 
 from __future__ import annotations
@@ -97,8 +97,8 @@ def read_motion(folder: Path) -> pd.DataFrame:
     Raises
     ------
     InputError
-        If there is no trace, or its file is truncated, has another version of the format, lacks
-        columns, or is not a trace.
+        If the file of the trace is missing, truncated, of another format or version, or lacks
+        columns.
     """
     return _read(folder / TRACE)
 
@@ -138,7 +138,7 @@ def _read(path: Path) -> pd.DataFrame:
 
 
 def _check(path: Path, schema: Any) -> None:
-    """Refuse other versions, foreign files, and files without all columns."""
+    """Refuse files of other formats or versions, and files that lack columns."""
     told = (schema.metadata or {}).get(_KEY, b"").decode("utf-8", "replace")
     expected = FORMATS[path.name]
     if told not in (expected, *EARLIER.get(path.name, ())):

@@ -16,9 +16,9 @@ BATCH = 5
 def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
     """Return the number of initial observations to drop, by the marginal standard error rule.
 
-    Of the batch means Z_1 ... Z_n, the first d are dropped, where d <= n / 2 minimises
-    V / (n - d)². V is the sum of (Z_j - m)² over all j > d, and m is the mean of these Z_j (White
-    1997). With batches of five, the rule is called MSER-5.
+    The rule (White 1997) drops the first d of the batch means Z_1 ... Z_n. It chooses the d <= n/2
+    that minimises V / (n - d)², where V is the sum of (Z_j - m)² over all j > d, and m is the mean
+    of these Z_j. With batches of five observations, it is called MSER-5.
 
     Parameters
     ----------
@@ -30,8 +30,8 @@ def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
     Returns
     -------
     int | None
-        A multiple of `batch`. None if the series is too short: there are fewer than four batches,
-        or the minimum is at the largest permitted d.
+        A multiple of `batch`; None if the series is too short, that is, if there are fewer than
+        four batches or the minimum is at the largest permitted d.
     """
     observed = np.asarray(values, np.float64)
     number = len(observed) // batch
@@ -47,14 +47,13 @@ def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
 def welch(values: ArrayLike, window: int) -> NDArray[np.float64]:
     """Return the moving average of Welch's method.
 
-    Observation i, counted from 0, is averaged with its `window` neighbours on either side or, if
-    i < `window`, with its i neighbours on either side. For the last `window` observations, no
-    average is returned.
+    Observation i (from 0) is averaged with its w neighbours on either side, where w is the smaller
+    of i and `window`. No averages are returned for the last `window` observations.
 
     Raises
     ------
     ValueError
-        If the window is below 1 or above half the number of observations.
+        If the window is less than 1 or greater than half the number of observations.
     """
     observed = np.asarray(values, np.float64)
     if not 1 <= window <= len(observed) // 2:

@@ -1,9 +1,9 @@
 """Import of a file of RAWSim-O, or of all such files in a folder.
 
-The converted files are written to the folders `layouts`, `scenarios`, `controllers` and `skus`,
-which have the subfolders of the source. `skus` also contains lists of orders and bundles. The file
-`import.md` lists every file of the source and tells what was left out or differs in rmfs, or why
-the file was skipped or refused.
+The converted files are written to the folders `layouts`, `scenarios`, `controllers` and `skus`, in
+the same subfolders as in the source. `skus` also contains lists of orders and bundles. The file
+`import.md` lists every file of the source. For each file, it states what was left out or differs in
+rmfs, or why the file was skipped or refused.
 """
 
 from __future__ import annotations
@@ -46,11 +46,11 @@ class Imported:
         Kind of the file, such as "scenario"; empty if it is not a RAWSim-O file that can be
         imported.
     written
-        Paths of the files to which it was converted, relative to the target folder.
+        Paths of the converted files, relative to the target folder.
     notes
-        What was left out, or differs in rmfs.
+        Remarks on what was left out or differs in rmfs.
     refused
-        Why the file was refused; empty if it was not.
+        Reason why the file was refused; empty if the file was not refused.
     """
 
     source: Path
@@ -60,7 +60,7 @@ class Imported:
     refused: str = ""
 
     def lines(self) -> list[str]:
-        """Return the result as lines, the first of which names the file."""
+        """Return the result as lines of text, the first of which names the file."""
         if not self.kind:
             return [
                 f"{self.source.as_posix()}: skipped, as it is not a RAWSim-O file that can be "
@@ -78,17 +78,17 @@ def import_files(
 ) -> list[Imported]:
     """Import a file, or all files of a folder and its subfolders.
 
-    If a file is refused, the others are imported all the same.
+    If a file is refused, the others are still imported.
 
     Parameters
     ----------
     source
         The file or folder.
     target
-        The folder to create. If it exists, it must be empty or come from an earlier import; it is
-        then replaced.
+        The folder to create. An existing folder is replaced, but only if it is empty or was written
+        by an earlier import.
     tell
-        Function called with the result for each file, as soon as the file has been handled.
+        Function that is called with the result for each file as soon as this file has been handled.
 
     Returns
     -------
@@ -97,8 +97,8 @@ def import_files(
     Raises
     ------
     InputError
-        If the source does not exist or contains nothing that can be imported, or the target cannot
-        be written. Then nothing is written.
+        If the source does not exist or contains nothing that can be imported, or if the target
+        cannot be written or replaced. In all these cases, the target is left unchanged.
     """
     if not source.exists():
         raise InputError(f"{source}: no such file or folder")
@@ -120,7 +120,7 @@ def import_files(
 
 
 def _imported(path: Path, name: Path, folder: Path) -> Imported:
-    """Import one file; what is wrong with it is kept as the reason of the refusal."""
+    """Import one file; if it is invalid, the error becomes the reason for the refusal."""
     suffix = path.suffix.lower()
     if suffix not in _KINDS:
         return Imported(name, "")
@@ -138,7 +138,7 @@ def _imported(path: Path, name: Path, folder: Path) -> Imported:
 
 
 def _move(files: list[Path], goal: Path, folder: Path) -> None:
-    """Move the files made of one to their place, unless another one's are there."""
+    """Move the converted files to the folder `goal`; refuse if any of them exists there."""
     for file in files:
         if (goal / file.name).exists():
             taken = (goal / file.name).relative_to(folder).as_posix()
@@ -189,7 +189,7 @@ def _sku_set(path: Path, target: Path) -> Written:
 
 
 def _order_list(path: Path, target: Path) -> Written:
-    """Write SKUs, orders and bundles; they have no due times."""
+    """Write the SKUs, orders and bundles of a list; the orders have no due times."""
     read = read_xitem(path)
     skus = sku_set(SkuFile(file=path))
     orders, bundles = (target.with_name(f"{target.stem}-{w}.csv") for w in ("orders", "bundles"))

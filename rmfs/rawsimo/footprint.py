@@ -1,8 +1,8 @@
 """The footprint columns and output files of RAWSim-O, and their counterparts in rmfs.
 
-In the counterparts, text in backticks is a column of the footprint of rmfs, or `table.column` of
-another table; the rest is prose. Columns that RAWSim-O computes incorrectly are computed correctly
-in rmfs; for columns that rmfs omits, the reason is given.
+In the counterparts, text in backticks names a column of rmfs: a column of the footprint or, in the
+form `table.column`, of another table. The rest is prose. Columns that RAWSim-O computes incorrectly
+are computed correctly in rmfs. For columns without a counterpart, the reason is given.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ class Mapped(NamedTuple):
     Attributes
     ----------
     theirs
-        Its name in RAWSim-O.
+        Name of the column or file in RAWSim-O.
     ours
-        Its counterpart in rmfs, or the reason why there is none.
+        The counterpart in rmfs, or the reason why there is none.
     """
 
     theirs: str
@@ -31,12 +31,12 @@ _RULE = "name and parameters of the rule: run.json, key controllers.parameters.{
 
 
 def _spread(theirs: str, ours: str) -> list[Mapped]:
-    """Map four columns to four of the footprint, which interpolate quartiles."""
+    """Map four columns to four columns of the footprint; rmfs interpolates quartiles."""
     return [Mapped(theirs + end, f"`{ours}_{_NAMES[end]}_s`") for end in _SPREAD]
 
 
 def _over_stations(theirs: str, ours: str, mean: str | None, note: str = "") -> list[Mapped]:
-    """Map four columns that summarise stations to the column of our table of stations."""
+    """Map four columns that summarise stations to one column of the table `stations` of rmfs."""
     own = f"`stations.{ours}`{note}"
     first = f"`{mean}` or the mean of {own}" if mean else f"mean of {own}"
     words = {"Avg": first, "Med": f"median of {own}"}
@@ -428,7 +428,7 @@ FILES: tuple[Mapped, ...] = (
 
 
 def markdown() -> str:
-    """Return the Markdown of the section on measures in the guide for users of RAWSim-O."""
+    """Return the section `Measures` of the guide for users of RAWSim-O, in Markdown."""
     lines = [
         "## Measures",
         "",

@@ -1,4 +1,4 @@
-"""Safe reading of XML files in RAWSim-O's formats, even if their origin is unknown.
+"""Safe reading of XML files of unknown origin, in the formats of RAWSim-O.
 
 The standard library's parser expands entities. A file that declares a document type is therefore
 refused at the declaration, so that it cannot define entities or cause other files to be read.
@@ -34,7 +34,7 @@ _CHUNK_BYTES = 1 << 16
 
 
 class _RefusedError(Exception):
-    """The file is not read on, for the reason given."""
+    """Reading was stopped, for the reason in the message."""
 
 
 class _PlainTree(ElementTree.TreeBuilder):
@@ -84,7 +84,7 @@ def read_root(path: Path, root: str) -> Element:
 
 
 def _parsed(path: Path, root: str) -> Element:
-    """Read in pieces, so that what is refused is refused where it stands."""
+    """Parse a file piece by piece, so that reading stops at the first content that is refused."""
     tree = _PlainTree()
     parser = ElementTree.XMLParser(target=tree)
     read = elements = gap = 0

@@ -1,7 +1,7 @@
 """Scenarios: SKUs, initial stock, demand and replenishment, independent of the warehouse.
 
-Nothing here depends on where pods, stations or robots are: a scenario defines what arrives and
-when, and the rest of the simulation determines how it is handled.
+Nothing here depends on where pods, stations or robots are. A scenario defines which orders and
+bundles arrive, and when; the rest of the simulation determines how they are handled.
 """
 
 from rmfs.scenario.bundles import BundleContent as BundleContent

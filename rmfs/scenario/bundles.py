@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class BundleContent(NamedTuple):
-    """The content of a bundle: a number of units of one SKU, and the space that they take."""
+    """The content of a bundle: a SKU, the number of its units, and the space units they take."""
 
     sku: int
     units: int
@@ -31,8 +31,8 @@ class BundleSource:
     return_share
         Probability that a bundle is a return of a single unit from a customer.
     path
-        Numbers that select a branch of the random stream (see `Substreams`), for bundles with a
-        numbering of their own.
+        Numbers that select a branch of the random stream (see `Substreams`); bundles that are
+        numbered separately, such as those of batches, have a branch of their own.
     """
 
     def __init__(

@@ -55,18 +55,18 @@ class Categorical:
         return probabilities
 
     def pick(self, uniform: float) -> int:
-        """Return the index for a number in [0, 1)."""
+        """Return the index that a uniform number in [0, 1) selects."""
         return bisect_right(self._cumulative, int(uniform * self._total))
 
     def pick_among(self, allowed: NDArray[np.bool_], uniform: float) -> int | None:
-        """Return an allowed index for a number in [0, 1).
+        """Return the index that a uniform number in [0, 1) selects among the allowed ones.
 
         The probabilities of the allowed indices are in proportion to their weights.
 
         Parameters
         ----------
         allowed
-            Which indices may be drawn, shape (K,).
+            Whether each index may be drawn, shape (K,).
 
         Returns
         -------

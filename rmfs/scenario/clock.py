@@ -41,7 +41,7 @@ class Cycle:
     Parameters
     ----------
     length_s
-        Length of the cycle.
+        Length of the cycle, in s.
     gone_s
         Time by which the cycle has advanced at time zero, in s; may exceed its length.
     """
@@ -55,15 +55,15 @@ class Cycle:
         return (time_us + self._gone_us) % self.length_us
 
     def times_us(self, phases_us: Sequence[int]) -> Iterator[tuple[int, int]]:
-        """Yield pairs (time, index): at that time, the phase with that index occurs.
+        """Yield the simulated times at which given phases occur, as pairs (time, index of phase).
 
-        The times are in us, from 0 on, and ascend; the sequence never ends.
+        The times are in us, ascending and not negative. The sequence never ends.
 
         Parameters
         ----------
         phases_us
-            Phases (times within the cycle in us) in ascending order, each less than the length of
-            the cycle; at least one.
+            At least one phase (a time within the cycle, in us), in ascending order, each less than
+            the length of the cycle.
         """
         return _Times(list(phases_us), self.length_us, -self._gone_us)
 
@@ -97,7 +97,7 @@ class Openings:
     Parameters
     ----------
     config
-        Down periods. None: never down.
+        The down periods; None if there are none.
     gone_s
         Time by which the cycle of down periods has advanced at time zero, in s.
 
@@ -116,7 +116,10 @@ class Openings:
         self.always = not self._borders
 
     def is_open(self, time_us: int) -> bool:
-        """Return whether a time in us is outside all down periods. A period excludes its end."""
+        """Return whether a time in us is outside all down periods.
+
+        A period includes its start but not its end.
+        """
         return self.open_from_us(time_us) == time_us
 
     def open_from_us(self, time_us: int) -> int:

@@ -56,7 +56,7 @@ class UniformCount(_Range):
 class NormalCount(_Range):
     """Normal distribution, truncated to [min - 0.5, max + 0.5) and rounded.
 
-    `mean` and `sd` are those before truncation. With `sd` = 0 the count is the rounded mean.
+    `mean` and `sd` are those before truncation. If `sd` is 0, the count is the rounded mean.
     """
 
     distribution: Literal["normal"] = "normal"

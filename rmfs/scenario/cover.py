@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def bundles_to_cover(scenario: Scenario, skus: SkuSet) -> list[int]:
-    """Return the SKUs of the bundles that the initial stock must contain for a file of orders.
+    """Return the SKU of each bundle that the initial stock must contain for a file of orders.
 
-    There is one entry per bundle. The bundles of a SKU contain at least `stock.order_cover` times
-    the units of this SKU ordered in the scenario's file up to the end of the run. The largest
+    The bundles of a SKU together contain at least `stock.order_cover` times the units of this SKU
+    that are ordered in the scenario's file up to the end of the run. The largest
     bundles come first, because small ones fit into the remaining space. The list is empty if
     `stock.order_cover` is 0.
 

@@ -1,9 +1,9 @@
 """Distributions of real numbers in scenarios; unbounded ones are truncated to a range.
 
 Every distribution is sampled by inversion: `quantile` converts a uniform number to a value, and
-truncation to [min, max] only narrows the range of that number. The values therefore follow the
-distribution *conditional* on lying in [min, max], as with rejection sampling, but each takes only
-one uniform number.
+truncation to [min, max] only narrows the range of the uniform number. The values therefore follow
+the distribution *conditional* on lying in [min, max], as with rejection sampling, but each value
+takes only one uniform number.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ LEAST_MASS = 1e-9
 
 
 class Constant(Block):
-    """Always the same value."""
+    """Distribution with a single possible value."""
 
     distribution: Literal["constant"] = "constant"
     value: Positive = 1.0
 
     def quantile(self, uniform: ArrayLike) -> NDArray[np.float64]:
-        """Return the value for each number in [0, 1)."""
+        """Return the value for each uniform number in [0, 1)."""
         return np.full(np.shape(uniform), self.value)
 
 
@@ -50,7 +50,7 @@ class Uniform(Block):
         return not_below(value, info, "min")
 
     def quantile(self, uniform: ArrayLike) -> NDArray[np.float64]:
-        """Return the value for each number in [0, 1)."""
+        """Return the value for each uniform number in [0, 1)."""
         return self.min + np.asarray(uniform) * (self.max - self.min)
 
 
@@ -79,7 +79,7 @@ class _Cut(Block, ABC):
         return np.array([self.min, np.inf if self.max is None else self.max])
 
     def quantile(self, uniform: ArrayLike) -> NDArray[np.float64]:
-        """Return the value for each number in [0, 1)."""
+        """Return the value for each uniform number in [0, 1)."""
         share = np.asarray(uniform, dtype=np.float64)
         low, high = self._below(self._limits)
         if low < 0.5:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class PriorityDue(Block):
-    """Two kinds of orders, urgent and ordinary, each with an offset of its own."""
+    """Orders are urgent or ordinary; all orders of a kind have the same offset."""
 
     mode: Literal["priority"] = "priority"
     urgent_share: Share = Field(0.2, description="share of orders that are urgent")
@@ -80,7 +80,7 @@ class ClassesDue(Block):
         return partial(_by_class, self._bounds(), tuple(one.offset_s for one in self.classes))
 
     def class_of(self, uniform: float) -> int:
-        """Return the index of the class that a number in [0, 1) selects, as in `sampler`."""
+        """Return the index of the class that a number in [0, 1) selects, as `sampler` does."""
         return bisect_right(self._bounds(), uniform)
 
     def _bounds(self) -> tuple[float, ...]:
@@ -162,9 +162,12 @@ NO_CLASS = -1
 
 
 def class_of(due: Due, uniform: float) -> int:
-    """Return the index of an order's class, given the number from which its offset was drawn.
+    """Return the index of an order's class; `NO_CLASS` unless `due` is a `ClassesDue`.
 
-    The result is `NO_CLASS` unless `due` is a `ClassesDue`.
+    Parameters
+    ----------
+    uniform
+        The number in [0, 1) from which the offset of the order was drawn.
     """
     return due.class_of(uniform) if isinstance(due, ClassesDue) else NO_CLASS
 

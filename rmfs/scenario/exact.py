@@ -2,7 +2,7 @@
 
 Sums, products, quotients and square roots are rounded the same way everywhere; logarithms, error
 functions and their inverses may differ in the last bits. The popularities and spaces of SKUs may be
-computed with such functions, so they are rounded here to far fewer digits before they are used.
+computed with the latter, so both are rounded here to far fewer digits before they are used.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
 def space(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """Round down to multiples of 1 / `SPACE_STEPS` space units, with a minimum of one step.
 
-    Sums and differences of such spaces are exact, so the space used on a pod does not drift and
+    Sums and differences of such values are exact, so the space used on a pod does not drift and
     does not depend on the order of operations. Values are rounded down so that ten units that take
     0.1 space units each fit into one space unit.
     """

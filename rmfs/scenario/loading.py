@@ -33,7 +33,7 @@ def load(name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]
 def load_with_notes(
     name_or_path: str | Path, overrides: Sequence[tuple[Sequence[str], Any]] = ()
 ) -> tuple[Scenario, list[str]]:
-    """Load a scenario; also return notes on the import of a file of RAWSim-O.
+    """Load a scenario; also return notes if it is imported from a file of RAWSim-O.
 
     Parameters
     ----------
@@ -45,8 +45,8 @@ def load_with_notes(
 
     Returns
     -------
-    The scenario, and notes on what the import left out and what differs in rmfs; for files in other
-    formats, there are no notes.
+    The scenario, and notes on settings that the import left out and on differences between RAWSim-O
+    and rmfs. For files in other formats, there are no notes.
 
     Raises
     ------

@@ -33,7 +33,7 @@ class OrderContent(NamedTuple):
     skus, units
         SKU and number of units of each line; all SKUs are different.
     due_offset_s
-        Time from arrival to due time, in s; with `DepartureDue`, its minimum.
+        Time from arrival to due time, in s; with `DepartureDue`, the minimum of this time.
     redraws
         Number of draws of a SKU that were rejected because earlier orders left too few units of it;
         at most `DRAWS_PER_LINE` for each line.

@@ -25,7 +25,7 @@ LONGEST_S = 86400.0
 
 
 class UnitTimes:
-    """Distribution of the picking time of a unit, without the effects of picker and pod.
+    """Distribution of the picking time of a unit, before the effects of picker and pod.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class UnitTimes:
         Parameters
         ----------
         station_s
-            Time of a unit in s that the layout gives for the station. It is the mean of the
+            Time per unit that the layout gives for the station, in s. It is the mean of the
             distribution, except if times are measured.
         """
         given = self._given
@@ -67,7 +67,7 @@ class UnitTimes:
         return station_s if self._measured is None else float(self._measured.mean())
 
     def least_s(self, station_s: float) -> float:
-        """Return the lower bound of the distribution, in s; 0 if it has no positive one."""
+        """Return the lower bound of the distribution, in s; 0 if the bound is not positive."""
         if isinstance(self._given, GammaTime | LognormalTime):
             return 0.0
         return station_s if self._measured is None else float(self._measured.min())
@@ -76,11 +76,19 @@ class UnitTimes:
 def learned(given: Learning | None, units: float) -> float:
     """Return the factor by which learning changes the time of a picker's next unit.
 
-    The picker has picked `units_before` units before this run and `units` units in it. By the
-    learning curve, a picker's n-th unit takes the time T1 (M + (1 - M) n**-b), where T1 is the time
-    of the first unit, M is `incompressible`, and b = -log2(`rate`): De Jong (1957), and for M = 0
-    Wright (1936). The factor is the time of the next unit, n = `units_before` + `units` + 1,
-    divided by that of unit number `standard_units`. If `given` is None, the factor is 1.
+    The factor is the time of the next unit divided by the time of unit number
+    `given.standard_units`. By the learning curve, a picker's n-th unit takes the time
+    T1 (M + (1 - M) n**-b), where T1 is the time of the first unit, M is `given.incompressible`, and
+    b = -log2(`given.rate`). This is the curve of De Jong (1957); with M = 0, it is that of Wright
+    (1936).
+
+    Parameters
+    ----------
+    given
+        The table `pickers.learning` of a scenario. If it is None, the factor is 1.
+    units
+        Number of units that the picker has picked in this run. The next unit therefore has the
+        number n = `given.units_before` + `units` + 1.
     """
     if given is None:
         return 1.0
@@ -93,8 +101,8 @@ def learned(given: Learning | None, units: float) -> float:
 def least_factor(given: Pickers) -> float:
     """Return a lower bound of the factor by which pickers and pods change a unit's drawn time.
 
-    It is the product of the bounds for speeds, layers and learning, or 0 if speeds are drawn.
-    Fatigue and errors only increase the time.
+    This is the product of the bounds for speeds, layers and learning, or 0 if speeds are drawn.
+    Fatigue and errors do not affect the bound, since they only increase the time.
     """
     if given.speed_variation:
         return 0.0
@@ -111,8 +119,8 @@ def measured_s(path: Path) -> NDArray[np.float64]:
     Raises
     ------
     InputError
-        If the file cannot be read, lacks the column, or contains no time or an invalid one; for an
-        invalid time, the message names the line.
+        If the file cannot be read, lacks the column, contains no times, or contains an invalid
+        time; for an invalid time, the message names the line.
     """
     try:
         text = read_bounded(path).decode("utf-8-sig")

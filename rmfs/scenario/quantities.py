@@ -28,9 +28,9 @@ class Block(Model):
 def not_below(value: Number, info: pydantic.ValidationInfo, key: str) -> Number:
     """Return `value` if it is not below the value of `key`, a field validated earlier.
 
-    To be called by the validator of a single field, which, unlike a validator of the whole table,
-    also runs if other fields are wrong; one message can thus list all errors. If the value of `key`
-    is invalid itself, the two values are not compared.
+    This function is for validators of a single field. Unlike validators of the whole table, these
+    also run if other fields are invalid, so that one message can list all errors. If the value of
+    `key` is invalid, the two values are not compared.
 
     Raises
     ------

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def sku_set(config: Skus) -> SkuSet:
-    """Return the SKUs of a scenario, drawn or read.
+    """Return the SKUs of a scenario, which are drawn or read from a file.
 
     Raises
     ------
@@ -52,8 +52,8 @@ def order_stream(scenario: Scenario, skus: SkuSet) -> OrderStream:
     Raises
     ------
     InputError
-        If the file is invalid, its digest differs from the one in the scenario, or its orders have
-        dates and none of them lies within the run.
+        If the file is invalid, its digest differs from that in the scenario, or its first order has
+        a date after the end of the run.
     """
     config = scenario.demand
     assert isinstance(config, StreamDemand)
@@ -76,7 +76,7 @@ def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> Bundl
     Parameters
     ----------
     largest_pod
-        Space units of the largest pod.
+        Capacity of the largest pod, in space units.
 
     Raises
     ------
@@ -97,14 +97,14 @@ def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> Bundl
 def time_zero(scenario: Scenario) -> datetime | None:
     """Return the date and time of time zero of a scenario.
 
-    This is `start`, if the scenario gives it. Otherwise, it is `time_of_day_s` after the midnight
-    before the earliest row of the files of orders and bundles; None if these files contain no
-    dates. It is the same for orders and bundles.
+    Time zero is `start` if the scenario specifies it. Otherwise, it is `time_of_day_s` after the
+    midnight before the earliest row of the files of orders and bundles, so that it is the same for
+    both. The result is None if there is neither `start` nor a file with dates.
 
     Raises
     ------
     InputError
-        If the times in one of the two files have a time zone and those in the other have none.
+        If the times have a time zone in only one of the two files.
     """
     if scenario.start is not None:
         return datetime.fromisoformat(scenario.start)

@@ -36,8 +36,8 @@ class InitialStock:
     pod, sku, units
         Pod, SKU and units of each of the n bundles, shape (n,).
     share
-        Space that the bundles take, as a share of the capacity of all pods; less than requested
-        only if no further bundle fits.
+        Space that the bundles take, as a share of the capacity of all pods. It is less than
+        requested only if no pod has room for a further bundle.
     """
 
     pod: NDArray[np.int64]
@@ -68,19 +68,18 @@ def initial_stock(
     Parameters
     ----------
     pod_capacity
-        Space units of each pod, shape (P,).
+        Capacity of each pod, in space units, shape (P,).
     share
         Share of the pods' total capacity to fill, in [0, 1]; once it is reached, no further bundle
         is drawn.
     seed
         The run's seed.
     choose
-        Function that takes a bundle and the free space of each pod, shape (P,), and returns a pod
-        with room for the bundle; only called if there is such a pod. Default: all pods with room
-        are equally likely.
+        Function that returns the index of a pod with room for a bundle. Its arguments are the
+        bundle and the free space of each pod, shape (P,). It is called only if there is such a pod.
+        Default: all pods with room are equally likely.
     first
-        The SKU of each bundle that is stored before others are drawn; a SKU may occur several
-        times.
+        SKUs of the bundles that are stored before other bundles are drawn, one entry per bundle.
 
     Raises
     ------
@@ -88,8 +87,8 @@ def initial_stock(
         If a bundle of some SKU is larger than the largest pod, or no pod has room for a bundle of
         `first`.
     ValueError
-        If `choose` returns a pod without room for a drawn bundle; bundles of `first` are not
-        checked.
+        If `choose` returns a pod without room for a drawn bundle. This is not checked for the
+        bundles of `first`.
     """
     skus.check_fit(pod_capacity.max(initial=0.0))
     place = _into_random_pods(seed) if choose is None else _where_possible(choose)
@@ -139,7 +138,7 @@ def _draw_sku(skus: SkuSet, too_large: float, number: float) -> int | None:
 
 
 def _into_random_pods(seed: int) -> Place:
-    """Return the rule that takes any pod with room, all equally likely."""
+    """Return the rule that draws a pod with room, all equally likely."""
     # a stream of its own, so that the same SKUs are stored whatever rule places them
     uniform = _uniform_numbers(seed, 1)
 
@@ -155,7 +154,7 @@ def _into_random_pods(seed: int) -> Place:
 
 
 def _where_possible(choose: ChoosePod) -> Place:
-    """Return the rule that asks `choose` if there is room at all."""
+    """Return the rule that calls `choose` if any pod has room, and returns None otherwise."""
 
     def place(bundle: BundleContent, free: NDArray[np.float64]) -> int | None:
         return choose(bundle, free) if free.max() >= bundle.space else None
@@ -164,7 +163,7 @@ def _where_possible(choose: ChoosePod) -> Place:
 
 
 def _uniform_numbers(seed: int, part: int) -> Iterator[float]:
-    """Yield uniform numbers in [0, 1) of a part of the stream of initial stock, without end."""
+    """Yield an endless sequence of uniform numbers from a part of the stream of initial stock."""
     numbers = generator(seed, Stream.INITIAL_STOCK, part)
     while True:
         yield from numbers.random(4096).tolist()

@@ -1,4 +1,4 @@
-"""Random numbers for the k-th item, such as an order, independent of those of all other items."""
+"""Independent random numbers for numbered items, such as orders: a substream for each item."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ if TYPE_CHECKING:
 
 
 class Substreams:
-    """One of the random streams derived from a seed, divided into numbered substreams.
+    """A random stream that is derived from a seed and divided into numbered substreams.
 
     A counter-based generator (Philox) computes its numbers from a key and a counter. The key is
     derived from the seed, the stream and the path, and the number of the substream is part of the
-    counter. Switching to a substream therefore takes about one microsecond; creating a generator
-    would take about ten.
-    A substream has 2**64 blocks of four numbers before it overlaps with the next.
+    counter. Switching to a substream therefore takes about one microsecond, whereas creating a
+    generator would take about ten. A substream has 2**64 blocks of four numbers before it overlaps
+    with the next one.
 
     Parameters
     ----------
     seed
         The run's seed, 0 or greater.
     stream
-        The stream, such as that of the contents of orders.
+        Purpose of the random numbers, for example `Stream.ORDER_CONTENTS`.
     path
         Numbers that select a branch of the stream; each branch has its own substreams.
     """
@@ -39,15 +39,15 @@ class Substreams:
         self._counter = self._start["state"]["counter"]
 
     def at(self, ordinal: int) -> Callable[[], float]:
-        """Return a function that returns the next number of a substream, uniform in [0, 1).
+        """Return a function, each call of which returns the next number of a substream.
 
-        The function must not be used after the next call of `at`, because all substreams share one
-        generator.
+        The numbers are uniform in [0, 1). The function must not be used after the next call of
+        `at`, because all substreams share one generator.
 
         Parameters
         ----------
         ordinal
-            Number of the substream; its sequence starts again from the first number.
+            Number of the substream, which starts again from its first number.
         """
         self._counter[1] = ordinal
         self._generator.state = self._start

@@ -13,9 +13,10 @@ if TYPE_CHECKING:
 
 
 def to_toml(model: pydantic.BaseModel) -> str:
-    """Return all parameters of a configuration, except those that are None, as TOML.
+    """Return a configuration as TOML text.
 
-    Defaults are included. Reading the text back gives an equal configuration.
+    The text contains all parameters, including those with default values, except parameters that
+    are None. Reading the text gives an equal configuration.
     """
     return "\n".join(_table(model, [])).lstrip("\n") + "\n"
 

@@ -1,4 +1,4 @@
-"""Topping up of a backlog, with pauses that depend on the stock or follow a failed attempt."""
+"""Determines when orders and bundles are generated to keep a backlog constant."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ class Hysteresis:
     Parameters
     ----------
     on_above, off_below
-        The two levels, `off_below` <= `on_above`; at exactly one of them, nothing changes.
+        The two levels, `off_below` <= `on_above`. From `off_below` to `on_above`, both included,
+        the switch keeps its state.
     on
-        State at the start.
+        Whether the switch is on initially.
     """
 
     def __init__(self, on_above: float, off_below: float, *, on: bool) -> None:
@@ -25,7 +26,7 @@ class Hysteresis:
         self.on = on
 
     def update(self, level: float) -> bool:
-        """Update the switch with the current level, and return its state."""
+        """Update the switch for the current level; return whether it is on."""
         if level > self._on_above:
             self.on = True
         elif level < self._off_below:
@@ -34,16 +35,16 @@ class Hysteresis:
 
 
 class _TopUp:
-    """Topping up of a backlog, with a pause after an order or bundle could not be generated.
+    """Tops up a backlog, with a pause whenever an order or bundle could not be generated.
 
     Parameters
     ----------
     capacity
-        Space units of all pods together.
+        Capacity of all pods together, in space units.
     retry_s
         Length of the pause.
     switch
-        The switch that depends on the stock.
+        The switch that pauses and resumes the generation depending on the stock.
     """
 
     def __init__(self, capacity: float, retry_s: float, switch: Hysteresis) -> None:
@@ -65,7 +66,7 @@ class OrderTopUp(_TopUp):
     config
         The table `demand` of a scenario.
     capacity
-        Space units of all pods together.
+        Capacity of all pods together, in space units.
     """
 
     def __init__(self, config: BacklogDemand, capacity: float) -> None:
@@ -76,8 +77,8 @@ class OrderTopUp(_TopUp):
     def wants(self, time_s: float, waiting: int, stored: float) -> bool:
         """Return whether an order should be generated now.
 
-        Has to be called after every change of the stock or the backlog, so that it notices whenever
-        the stock crosses one of the levels at which a pause starts or ends.
+        This method must be called after every change of the stock or the backlog. Otherwise, it
+        might miss that the stock has crossed a level at which a pause starts or ends.
 
         Parameters
         ----------
@@ -86,7 +87,7 @@ class OrderTopUp(_TopUp):
         waiting
             Number of orders not yet assigned to a station.
         stored
-            Space taken by the stored units of all pods, in space units.
+            Space taken by the units stored in all pods, in space units.
         """
         enough = self._switch.update(stored / self._capacity) or not self._by_stock
         return enough and waiting < self._most and time_s >= self.blocked_until_s
@@ -95,15 +96,15 @@ class OrderTopUp(_TopUp):
 class BundleTopUp(_TopUp):
     """Determines when the next bundle of a constant backlog is generated.
 
-    The load is the space taken by stored units, by bundles on their way into pods and by waiting
-    bundles, in space units.
+    The load is the space, in space units, taken by all stored units and by all bundles that have
+    arrived and are not stored yet.
 
     Parameters
     ----------
     config
         The table `replenishment` of a scenario.
     capacity
-        Space units of all pods together.
+        Capacity of all pods together, in space units.
     """
 
     def __init__(self, config: BacklogReplenishment, capacity: float) -> None:
@@ -115,7 +116,8 @@ class BundleTopUp(_TopUp):
     def wants(self, time_s: float, waiting: int, load: float) -> bool:
         """Return whether a bundle should be generated now.
 
-        Has to be called after every change of the load or the backlog, like `OrderTopUp.wants`.
+        This method must be called after every change of the load or the backlog (see
+        `OrderTopUp.wants`).
 
         Parameters
         ----------
@@ -124,19 +126,21 @@ class BundleTopUp(_TopUp):
         waiting
             Number of bundles that lack a station, a pod, or both.
         load
-            Current load (see the class).
+            Current load, as defined in the description of the class.
         """
         full = self._switch.update(load / self._capacity) and self._by_stock
         return not full and waiting < self._most and time_s >= self.blocked_until_s
 
     def accepts(self, load: float, space: float) -> bool:
-        """Return whether the load limit admits a bundle; if not, the caller has to call `failed`.
+        """Return whether a bundle fits within the load limit.
+
+        If it does not, the caller must call `failed`.
 
         Parameters
         ----------
         load
             Load without the bundle.
         space
-            Space units of the bundle.
+            Space that the bundle takes, in space units.
         """
         return load + space <= self._load_limit_share * self._capacity

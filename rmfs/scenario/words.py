@@ -1,4 +1,4 @@
-"""Orders that are words of coloured letters; a letter in one colour is a SKU."""
+"""Orders that spell words; each SKU is a letter in a certain colour."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 class WordSource:
-    """Draws orders that are words, all equally likely.
+    """Draws orders that spell words; all words are equally likely.
 
-    The colour and the number of units of each letter are drawn, too. Equal letters of one colour
-    form one line. An order depends only on the configuration, the seed, `path` and its number, in
-    particular not on stock.
+    The colour and the number of units of each letter are drawn, too. Equal letters of the same
+    colour form one line. An order depends only on the configuration, the seed, `path` and the
+    number of the order; it does not depend on the stock.
 
     Parameters
     ----------
@@ -32,8 +32,8 @@ class WordSource:
     seed
         The run's seed.
     path
-        Numbers that select a branch of the random stream (see `Substreams`), for orders with a
-        numbering of their own, such as those that arrive in batches.
+        Numbers that select a branch of the random stream (see `Substreams`). Orders that are
+        numbered separately, such as those that arrive in batches, need a separate branch.
     """
 
     def __init__(

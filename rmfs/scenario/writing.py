@@ -25,12 +25,12 @@ def write_scenario(scenario: Scenario, path: Path) -> list[Path]:
     Parameters
     ----------
     path
-        The file NAME.toml. Further files are written beside it if the scenario needs them:
+        The file NAME.toml. Further files are written to its folder if the scenario needs them:
         NAME-skus.json, NAME-words.txt, NAME-orders.csv, NAME-bundles.csv, NAME-times.csv.
 
     Returns
     -------
-    The paths of all files written, `path` first.
+    The paths of all files written, beginning with `path`.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def _text(path: Path) -> str:
     Raises
     ------
     InputError
-        If it cannot be read, or is not UTF-8 text.
+        If the file cannot be read, or is not UTF-8 text.
     """
     try:
         return read_bounded(path).decode("utf-8-sig")

@@ -1,4 +1,4 @@
-"""The run loop: when things happen, and how decisions become events."""
+"""Simulation of runs: the run loop, its agenda of events, and the calls of controllers."""
 
 from rmfs.simulation.kernel import Kernel as Kernel
 from rmfs.simulation.loop import StalledError as StalledError

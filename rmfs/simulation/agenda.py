@@ -17,7 +17,7 @@ LAST = 9
 
 
 def us_at(time_s: float) -> int:
-    """Return the first microsecond that is not before a time given in s."""
+    """Convert a time in s to microseconds, rounded up."""
     time_us = ceil(time_s * 1e6)
     return time_us if time_us / 1e6 >= time_s else time_us + 1
 
@@ -25,9 +25,9 @@ def us_at(time_s: float) -> int:
 class Agenda:
     """A heap of callbacks ordered by time, priority and serial number.
 
-    Of entries with equal time, the one with the lowest priority number comes first; if the
-    priorities are also equal, the one that was added first. Callbacks must be bound methods, or
-    partials of these, so that a simulation can be copied and saved with its future events.
+    Of entries with equal time, the one with the lowest priority number comes first; of those with
+    equal priority, the one that was added first. Callbacks must be bound methods or partials of
+    bound methods, so that a simulation can be copied and saved with its future events.
 
     Attributes
     ----------
@@ -47,13 +47,13 @@ class Agenda:
 
     @property
     def next_us(self) -> int:
-        """Time of the next entry in microseconds, `NEVER_US` if there is none."""
+        """Time of the next entry in microseconds; `NEVER_US` if there is none."""
         if self._cancelled:
             self._drop_cancelled()
         return self._heap[0][0] if self._heap else NEVER_US
 
     def at(self, time_us: int, callback: Callable[[], None], priority: int = 0) -> int:
-        """Add a callback; return its serial number, by which it can be cancelled."""
+        """Add a callback; return its serial number, which is needed to cancel it."""
         self._serial += 1
         heappush(self._heap, (time_us, priority, self._serial, callback))
         return self._serial
@@ -63,11 +63,11 @@ class Agenda:
         return self.at(self.now_us + us, callback)
 
     def cancel(self, serial: int) -> None:
-        """Cancel an entry by its serial number; it must not have been called yet."""
+        """Cancel the entry with this serial number; its callback must not have been called yet."""
         self._cancelled[serial] = None
 
     def run_due(self) -> None:
-        """Call everything due now, in order, including entries that callbacks add for this time."""
+        """Call all callbacks due now, in order, including those added meanwhile for this time."""
         heap, now_us = self._heap, self.now_us
         while heap and heap[0][0] <= now_us:
             _, _, serial, callback = heappop(heap)
@@ -77,11 +77,11 @@ class Agenda:
                 callback()
 
     def when_settled(self, callback: Callable[[], None]) -> None:
-        """Add a callback for this instant, to be called after the controllers have decided."""
+        """Add a callback to be called at the current time, after the controllers have decided."""
         self._settled.append(callback)
 
     def run_settled(self) -> bool:
-        """Call everything added by `when_settled`; return whether there was anything."""
+        """Call all callbacks added by `when_settled`; return whether there were any."""
         if not self._settled:
             return False
         callbacks, self._settled = self._settled, []

@@ -1,4 +1,4 @@
-"""Times at which controllers want to be called; controllers state them by `next_event_s`."""
+"""Calls of controllers at the times that they request by `next_event_s`."""
 
 from __future__ import annotations
 
@@ -18,22 +18,24 @@ if TYPE_CHECKING:
 
 
 class Alarms:
-    """Agenda entries of controllers that specify when they want to be called, one for each.
+    """Agenda entries for the times at which controllers request to be called.
+
+    Each controller has at most one entry.
 
     Parameters
     ----------
     due
-        Function that is called with a decision problem at the time that its controller specified.
+        Function that is called at each such time, with the decision problem of the controller.
     outside
-        Decision problems decided outside the simulation; their installed rules still specify when
-        decisions are requested.
+        Decision problems that are decided outside the simulation. Their installed rules still
+        determine the times at which decisions are requested.
 
     Attributes
     ----------
     punctual
-        Problems whose controllers specify when they want to be called.
+        Problems whose controllers request to be called at certain times.
     overdue
-        Problems whose controllers are due and have not been called yet.
+        Problems whose controllers are due but have not been called yet.
     """
 
     def __init__(
@@ -52,7 +54,7 @@ class Alarms:
         self.overdue: set[Problem] = set()
 
     def connect(self, problems: Iterable[Problem]) -> None:
-        """Determine which installed controllers specify when they want to be called."""
+        """Determine which installed controllers request to be called at certain times."""
         self.punctual = frozenset(
             problem
             for problem in problems
@@ -60,9 +62,9 @@ class Alarms:
         )
 
     def asked(self, problem: Problem) -> None:
-        """Update the entry of a problem's controller after it was called.
+        """Update the entry of a problem's controller after a call of the controller.
 
-        The controller may now specify another time.
+        After the call, the controller may request another time than before.
         """
         if self.overdue:
             self.overdue.discard(problem)
@@ -70,7 +72,7 @@ class Alarms:
             self._enter(problem)
 
     def cancel(self, problem: Problem) -> None:
-        """Cancel the entry of a problem's controller, if it has one."""
+        """Cancel the entry of a problem's controller, if there is one."""
         if problem in self._set:
             self._agenda.cancel(self._set.pop(problem)[1])
 

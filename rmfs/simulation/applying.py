@@ -59,14 +59,14 @@ class Applying:
         }
 
     def __call__(self, decision: Any, call: Call | None) -> None:
-        """Apply a decision; `call` is the call to an optimiser on which it is based, if any.
+        """Apply a decision; `call` is the optimiser call on which it is based, or None.
 
         Raises
         ------
         ValueError
-            If the decision violates a rule of the world; nothing has changed then.
+            If the decision is impossible; the state of the world is then unchanged.
         TypeError
-            If `decision` is not a decision.
+            If `decision` is not a decision as defined in `rmfs.control.decisions`.
         """
         how = self._how.get(type(decision))
         if how is not None:
@@ -89,7 +89,7 @@ class Applying:
     def release_pod(self, decision: say.ReleasePod) -> None:
         """Release the bundles promised to a pod.
 
-        Bundles whose station ROA has already chosen are thereby assigned to it.
+        Each bundle for which ROA has already chosen a station is thereby assigned to this station.
         """
         assigned = self._world.release_bundles(decision.pod)
         self._events.bundles_released(decision.pod)

@@ -1,4 +1,4 @@
-"""Pickling of arrays that share memory: a view remains a view of the copied base."""
+"""Pickling of arrays that share memory: the copy of a view is a view of the copied array."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
 
 
 class ArrayPickler(pickle.Pickler):
-    """Pickler that keeps views of arrays as views, whereas NumPy alone makes independent copies.
+    """Pickler that keeps views of arrays as views; NumPy alone would make independent copies.
 
     Parameters
     ----------
     aside
         Function that receives the contents of arrays, which are then left out of the pickled
-        stream.
+        stream. Default: the stream includes these contents.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class ArrayPickler(pickle.Pickler):
 
 
 def _reduced(array: NDArray[Any]) -> Any:
-    """Reduce a view to its base, and where in it the view begins."""
+    """Reduce a view to its base array and the position in the base at which the view begins."""
     base = array.base
     if type(base) is not np.ndarray or not base.flags.c_contiguous or base.dtype.hasobject:
         return array.__reduce_ex__(5)
@@ -50,7 +50,7 @@ def _view(
     begin: int,
     writeable: bool,
 ) -> NDArray[Any]:
-    """Make the view again."""
+    """Restore a view of a base array."""
     view: NDArray[Any] = np.ndarray(shape, dtype, base, begin, strides)
     view.flags.writeable = writeable
     return view

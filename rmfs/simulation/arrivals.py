@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 
 
 class ArrivalProcess:
-    """Asks the scenario for arrivals whenever `top_up` is called, and adds them to the world.
+    """Gets arrivals from the scenario whenever `top_up` is called, and adds them to the world.
 
-    It implements `rmfs.scenario.State`, from which the scenario reads the state of the run.
+    The class implements `rmfs.scenario.State`, by which the scenario reads the state of the run.
 
     Parameters
     ----------
     seed
         Seed of the run.
     wanted
-        Function that is called when the next arrival may be due; it must see to it that `top_up` is
-        called at this instant.
+        Function that is called at the time at which the next arrival may be due. It must ensure
+        that `top_up` is called at the same simulated time.
     recorder
         Records all orders and bundles.
     """
@@ -91,7 +91,7 @@ class ArrivalProcess:
         return orders_us if orders_us < bundles_us else bundles_us
 
     def redraw(self) -> None:
-        """Redraw the next arrivals after random streams were replaced; see `Intake.redraw`."""
+        """Redraw the next arrivals after the random streams were replaced; see `Intake.redraw`."""
         now_us = self._agenda.now_us
         if self._woken_us > now_us:
             self._agenda.cancel(self._wake)
@@ -128,7 +128,7 @@ class ArrivalProcess:
         self._events.bundle_created(bundle)
 
     def _wake_at(self, time_us: int) -> None:
-        """Ask again at a time, unless that has been arranged already."""
+        """Schedule the next call of `wanted`, unless it is already scheduled for this time."""
         if time_us != self._woken_us:
             self._woken_us = time_us
             self._wake = self._agenda.at(time_us, self._wanted)
@@ -147,32 +147,32 @@ class ArrivalProcess:
 
     @property
     def stored_space(self) -> float:
-        """Space units taken by the units stored on all pods."""
+        """Space taken by the units stored in all pods, in space units."""
         return self._world.inventory.stored_space
 
     @property
     def load(self) -> float:
-        """Space units taken by all stored units and by all bundles that are not stored yet."""
+        """Space taken by all stored units and by bundles not stored yet, in space units."""
         return self._world.load
 
     @property
     def uncommitted(self) -> NDArray[np.int64]:
-        """Stored units per SKU minus those that orders still need, shape (K,); may be negative."""
+        """Stored units minus units that orders still need, by SKU, shape (K,); may be negative."""
         return self._world.inventory.uncommitted
 
     @property
     def incoming(self) -> NDArray[np.int64]:
-        """Units in bundles that have arrived and are not stored yet, per SKU, shape (K,)."""
+        """Units of each SKU in bundles that have arrived and are not stored yet, shape (K,)."""
         return self._world.incoming
 
     @property
     def active_pick_share(self) -> float:
-        """Active pick stations as a share of all; if none is active, one is counted."""
+        """Share of pick stations that are active; at least one station counts as active."""
         return _active_share(self._world.pick_stations)
 
     @property
     def active_replenishment_share(self) -> float:
-        """Active replenishment stations as a share of all; if none is active, one is counted."""
+        """Share of active replenishment stations; at least one station counts as active."""
         return _active_share(self._world.replenishment_stations)
 
 

@@ -67,8 +67,8 @@ def resumed(path: Path, simulation: K) -> K:
     Raises
     ------
     InputError
-        If there is no such file, it cannot be read, or it is from another run or version of the
-        code.
+        If there is no such file, if the file cannot be read, or if it was written by a run with
+        other inputs or by another version of the code.
     """
     if not path.is_file():
         raise InputError(

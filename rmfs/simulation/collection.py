@@ -1,4 +1,4 @@
-"""Fewer garbage collections while a run goes on."""
+"""Fewer garbage collections during a run."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ ALLOCATIONS = 100_000
 
 @contextmanager
 def fewer_collections() -> Iterator[None]:
-    """Let the garbage collector look for cycles less often, as a run makes hardly any.
+    """Reduce the number of garbage collections within the context.
 
-    The collector's thresholds are restored at the end. A threshold of 0 (no collections) is kept.
+    A run creates hardly any reference cycles. At the end, the collector's thresholds are restored.
+    A threshold of 0 (no collections) is kept.
     """
     before = gc.get_threshold()
     if 0 < before[0] < ALLOCATIONS:

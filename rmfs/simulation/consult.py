@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 class PhaseConsult:
-    """Passes TA's questions to the installed controllers, and keeps statistics of the decisions."""
+    """Passes TA's questions to the installed controllers, and records their decisions."""
 
     def __init__(self, world: World, controllers: ControllerSet, deciding: Deciding) -> None:
         self._world = world
@@ -34,12 +34,12 @@ class PhaseConsult:
         self._deciding = deciding
 
     def serves(self, pod: int, station: int) -> bool:
-        """Ask PPS whether a pod has work at a station."""
+        """Return whether a pod has work at a station, according to the PPS controller."""
         pps: PodSelection[Any] = self._controllers[Problem.PPS]
         return pps.serves(pod, station)
 
     def pod_for(self, robot: Robot, station: int) -> int:
-        """Ask PPS for the pod that a robot should bring to a station; -1 for none."""
+        """Return the pod that a robot should bring to a station, as chosen by PPS; -1 for none."""
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
         target = self._world.work_stations[station]
         if isinstance(target, PickStation):
@@ -52,24 +52,24 @@ class PhaseConsult:
         )
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask PPS for the next station of the pod that a robot carries."""
+        """Return the next station of a robot's pod, as chosen by PPS from `stations`."""
         pps: PodSelection[Any] = self._controllers.consulted(Problem.PPS)
         asked = (Problem.PPS, "next station", robot.index, tuple(stations))
         return self._number(asked, pps, lambda: pps.next_station(robot, stations))
 
     def place_for(self, robot: Robot) -> int:
-        """Ask PSA for a storage location (waypoint) for the pod of a robot; -1 for none."""
+        """Return a storage location (waypoint) for a robot's pod, chosen by PSA; -1 for none."""
         psa: PodStorageAssignment[Any] = self._controllers.consulted(Problem.PSA)
         asked = (Problem.PSA, "place", robot.index, ())
         return self._number(asked, psa, lambda: psa.place(robot))
 
     def may_move(self) -> bool:
-        """Whether the repositioning rule ever moves pods."""
+        """Return whether the repositioning rule ever moves pods."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         return not rule.never
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask repositioning for a move; None if it has none or is not ready for this robot."""
+        """Return a repositioning move for a robot; None if the rule has none or is not ready."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         if not rule.is_ready(robot):
             return None
@@ -89,7 +89,7 @@ class PhaseConsult:
         ask: Callable[[], int | By[int]],
         modelled: bool = True,
     ) -> int:
-        """Ask for a number; -1 is no decision. `asked` are the parts of the `Question`."""
+        """Return the result of `ask`, -1 for no decision; `asked`: arguments of `Question`."""
         start = perf_counter_ns()
         number, call = told_by(ask(), None)
         spent_ns = perf_counter_ns() - start
@@ -102,7 +102,7 @@ class PhaseConsult:
 class OutsideConsult(PhaseConsult):
     """Answers TA's questions in a run in which some problems are decided outside the simulation.
 
-    Questions about all other problems are answered as by `PhaseConsult`. The methods that ask for a
+    Questions about all other problems are answered as by `PhaseConsult`. The methods that return a
     pod, station, storage location or move raise `Awaits` if the question must first be answered
     outside the simulation.
     """
@@ -114,30 +114,30 @@ class OutsideConsult(PhaseConsult):
         self._outside = outside
 
     def pod_for(self, robot: Robot, station: int) -> int:
-        """Ask for the pod that a robot should bring to a station; -1 for none."""
+        """Return the pod that a robot should bring to a station; -1 for none."""
         picks = isinstance(self._world.stations[station], PickStation)
         kind = "pick pod" if picks else "replenishment pod"
         question = Question(Problem.PPS, kind, robot.index, (station,))
         return self._asked(question, lambda: super(OutsideConsult, self).pod_for(robot, station))
 
     def next_station(self, robot: Robot, stations: Sequence[int]) -> int:
-        """Ask for the next station of the pod that a robot carries."""
+        """Return the next station of a robot's pod, one of `stations`."""
         question = Question(Problem.PPS, "next station", robot.index, tuple(stations))
         return self._asked(
             question, lambda: super(OutsideConsult, self).next_station(robot, stations)
         )
 
     def place_for(self, robot: Robot) -> int:
-        """Ask for a storage location (waypoint) for the pod of a robot; -1 for none."""
+        """Return a storage location (waypoint) for a robot's pod; -1 for none."""
         question = Question(Problem.PSA, "place", robot.index)
         return self._asked(question, lambda: super(OutsideConsult, self).place_for(robot))
 
     def may_move(self) -> bool:
-        """Whether repositioning ever moves pods; true if it is decided outside the simulation."""
+        """Return whether repositioning ever moves pods; true if it is decided outside."""
         return Problem.REPOSITIONING in self._outside.problems or super().may_move()
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask for a move; None if there is none, or if the rule is not ready for this robot."""
+        """Return a repositioning move for a robot; None if the rule has none or is not ready."""
         rule: Repositioning[Any] = self._controllers.consulted(Problem.REPOSITIONING)
         question = Question(Problem.REPOSITIONING, "move", robot.index)
         if not self._outside.knows(question) and not rule.is_ready(robot):

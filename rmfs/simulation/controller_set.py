@@ -32,7 +32,7 @@ class ControllerSet:
     seed
         The run's seed; each controller has its own random stream.
     lookahead
-        Passed to controllers that look ahead.
+        Function that prepares trials of decisions, for controllers that look ahead.
 
     Attributes
     ----------
@@ -41,8 +41,8 @@ class ControllerSet:
     calls
         For each `Trigger`, the problems whose controllers are called after it.
     listeners
-        For each `Trigger`, the methods `hear` of the controllers and trackers that are notified of
-        it immediately.
+        For each `Trigger`, the methods `hear` of the controllers and trackers that are immediately
+        notified of the event.
     """
 
     def __init__(
@@ -67,19 +67,20 @@ class ControllerSet:
     def consulted(self, problem: Problem) -> Any:
         """Return the controller that answers TA's questions about a problem.
 
-        If a placeholder (dummy) is installed for the problem, this is the joint controller that
-        decides in its place. A joint controller must also implement the methods of the problem's
-        protocol.
+        This is the installed controller or, if that is a placeholder (dummy), the joint controller
+        that decides in its place. The joint controller must therefore also have the methods by
+        which TA asks about the problem.
         """
         return self._consulted[problem]
 
     def install(self, choice: Choice) -> None:
-        """Create a controller and install it in place of its problem's present controller.
+        """Create a controller and install it in place of the present controller of its problem.
 
         Raises
         ------
         InputError
-            If it is incompatible with the layout or the scenario; nothing has changed then.
+            If the new controller is incompatible with the layout or the scenario; the present
+            controller then remains installed.
         """
         self._create(choice)
         self._connect()
@@ -95,7 +96,7 @@ class ControllerSet:
         Raises
         ------
         InputError
-            If it is incompatible with the layout or the scenario.
+            If the controller is incompatible with the layout or the scenario.
         """
         problem = choice.problem
         number = self._generations[problem]
@@ -110,7 +111,7 @@ class ControllerSet:
         self.installed[choice.problem] = created
 
     def _connect(self) -> None:
-        """Determine which controllers each trigger asks or notifies, and which one decides what."""
+        """Update which controllers are called or notified after each trigger, or asked by TA."""
         self._consulted = dict(self.installed)
         for controller in self.installed.values():
             for problem in controller.decides:

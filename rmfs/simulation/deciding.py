@@ -35,7 +35,7 @@ LONGEST = 200
 
 
 class Deciding:
-    """Asks controllers for decisions, applies these, and keeps statistics.
+    """Asks controllers for decisions, applies the decisions, and keeps statistics of them.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class Deciding:
     def connect(
         self, apply: Callable[[Any, Call | None], None], optimisers: OptimiserGateway
     ) -> None:
-        """Set the function that applies decisions, and the gateway for questions to optimisers."""
+        """Set the function that applies decisions, and the gateway to optimisers."""
         self._apply, self._optimisers = apply, optimisers
 
     def ask(self, problem: Problem, given: Iterable[Any], answer: Call | None = None) -> None:
@@ -80,9 +80,10 @@ class Deciding:
         Parameters
         ----------
         given
-            Iterable of decisions; the controller makes each one when it is taken from the iterable.
+            Iterable of decisions; the controller makes each decision when the next element is taken
+            from the iterable.
         answer
-            The call to an optimiser on whose answer the decisions are based, if there is one.
+            The call to an optimiser on whose answer the decisions are based; None if there is none.
 
         Raises
         ------
@@ -133,7 +134,7 @@ class Deciding:
             alarms.asked(problem)
 
     def _blame(self, error: Exception, problem: Problem, last: Any) -> None:
-        """Add to an error which controller was deciding, the innermost one if nested."""
+        """Add a note to an error: which controller was deciding (the innermost if nested)."""
         if not getattr(error, "__notes__", ()):
             controller = self._controllers[problem]
             error.add_note(
@@ -149,27 +150,29 @@ class Deciding:
         state: RuleState,
         answer: Call | None = None,
     ) -> None:
-        """Do as `ask` does, for a rule whose work may be interrupted by a question.
+        """Apply decisions one by one, like `ask`, for a rule that may have to wait for an answer.
 
-        The question is about a decision problem that is decided outside the simulation.
+        While it decides, the rule may ask about a problem that is decided outside the simulation.
+        Until this question is answered, the rule cannot continue.
 
         Parameters
         ----------
         decide
-            Function that asks the rule for decisions, or passes the answer of an optimiser on to
-            it.
+            Function that asks the rule for decisions, or passes the answer of an optimiser to the
+            rule.
         outside
-            Holds the answers that the rule's questions have got so far.
+            Contains the answers to the rule's earlier questions.
         state
             Saves and restores the state of the rule.
         answer
-            The call whose answer is passed on; None if the rule is asked for decisions.
+            The call whose answer is passed to the rule; None if the rule is asked for decisions.
 
         Raises
         ------
         Awaits
             If a question must first be answered outside the simulation. The rule is then in the
-            state that it had after its last decision, and must be asked again after the answer.
+            state that it had after its last decision; once the question is answered, this method
+            must be called again.
         """
         controller = self._controllers[problem]
         which = -1 if answer is None else answer.number
@@ -211,7 +214,9 @@ class Deciding:
     def _refuse(
         self, problem: Problem, controller: Controller[Any], decision: Any, error: Exception
     ) -> None:
-        """Report an impossible decision of a user's rule; one of our own rules is a defect.
+        """Raise an error that describes an impossible decision, if a user's rule made it.
+
+        If a rule of rmfs made it, which is a defect, the caller raises the original error.
 
         Raises
         ------
@@ -262,15 +267,15 @@ class Deciding:
         Parameters
         ----------
         wall_ns
-            Wall time that this controller took, in nanoseconds; it is not counted as TA's.
+            Wall time that this controller took, in nanoseconds; it is not counted as time of TA.
         decided
             Whether the controller decided anything.
         call
             The call to an optimiser on whose answer the decision is based; None if the controller's
             own rule decided.
         modelled
-            Whether optimisers can make this kind of choice. If not, the choice is not counted as
-            one that the controller's own rule made in place of an optimiser.
+            Whether optimisers can make this kind of decision. Only such decisions are counted as
+            made by the controller's own rule in place of an optimiser.
         """
         self._nested_ns += wall_ns
         self.record(problem, wall_ns, int(decided), int(decided and call is None))
@@ -280,7 +285,7 @@ class Deciding:
     def decided(self, problem: Problem, call: Call | None) -> None:
         """Count a decision of a controller that uses optimisers.
 
-        It counts for `call`, or for the controller's own rule if `call` is None.
+        The decision is counted for `call` or, if `call` is None, for the controller's own rule.
         """
         if call is None:
             self._events.rule_decided(problem.value, self._world.now_s)
@@ -295,10 +300,10 @@ class Deciding:
         wall_ns
             Wall time of the call in nanoseconds.
         count
-            Number of decisions made in it.
+            Number of decisions made in the call.
         by_rule
-            Number of these decisions that are not based on an optimiser's answer; those that are
-            based on an answer are counted in its `Call`.
+            Number of these decisions that are not based on an optimiser's answer. The others are
+            counted elsewhere, in the `Call` to the optimiser.
         """
         now_s, statistics = self._world.now_s, self.statistics[problem]
         statistics.wall_ns.append(wall_ns)
@@ -308,7 +313,7 @@ class Deciding:
 
 
 def is_foreign(controller: Controller[Any]) -> bool:
-    """Whether a controller was written by a user and is not part of rmfs."""
+    """Return whether a controller is a user's own, that is, not part of rmfs."""
     return type(controller).__module__.partition(".")[0] != "rmfs"
 
 

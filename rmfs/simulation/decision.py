@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class ImpossibleError(ValueError):
-    """An answer is impossible, or the question was answered before; the message says why."""
+    """An answer is impossible, or its question has already been answered; the message says why."""
 
 
 class Asking(Protocol):
@@ -38,22 +38,23 @@ class Asking(Protocol):
 
     @property
     def deciding(self) -> Deciding:
-        """The part that records decisions."""
+        """The part of the simulation that keeps statistics of decisions."""
         ...
 
     @property
     def controller_set(self) -> ControllerSet:
-        """The rules that can give advice."""
+        """The installed controllers, whose rules can give advice."""
         ...
 
 
 class Decision:
     """One decision to be made outside the simulation: a question, with methods to answer it.
 
-    In POA, ROA, RPS, SA, MM, CA and TA, a question is a turn: call `answer` with one decision after
-    another (see `rmfs.control.decisions`), each of which is applied immediately, and then `decline`
-    to end the turn. A question of PPS, PSA or repositioning comes up while TA decides and has a
-    single answer: a pod, a station, a storage location, or a `Move`.
+    For POA, ROA, RPS, SA, MM, CA and TA, a question is a *turn*, in which any number of decisions
+    (see `rmfs.control.decisions`) can be made: call `answer` for each of them, which applies it
+    immediately, and then `decline` to end the turn. A question about PPS, PSA or repositioning
+    comes up while TA decides, and has a single answer: a pod, a station, a storage location, or a
+    `Move`.
 
     Attributes
     ----------
@@ -131,7 +132,7 @@ class Decision:
         self._apply(given)
 
     def choose(self, row: int) -> None:
-        """Answer with a row of `candidates`, without the check that `answer` makes.
+        """Answer with a row of `candidates`, given by its number, without the checks of `answer`.
 
         Raises
         ------
@@ -144,13 +145,13 @@ class Decision:
         self._apply(self.candidates[row])
 
     def decline(self) -> None:
-        """Make no further decision: end a turn, or tell TA that nothing is chosen.
+        """Make no further decision: end a turn, or answer TA that no option is chosen.
 
         Raises
         ------
         ImpossibleError
-            If the question is of the kind `next station`, where a station must be chosen, or has
-            already been answered.
+            If the question has already been answered, or is of the kind `next station`, for which a
+            station must be chosen.
         """
         self._refuse_answered()
         if self.kind == "next station":
@@ -163,8 +164,8 @@ class Decision:
     def advice(self) -> Any:
         """Return what the installed rule of the problem would answer; None if it would decline.
 
-        Rules assume that their decisions are carried out: follow the advice throughout, or not at
-        all. The rule draws random numbers as if it had decided.
+        Rules assume that their decisions are carried out. Therefore, either follow all advice of a
+        rule in the run, or none. Advice uses up random numbers of the rule, as a decision does.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Converts tasks to commands for `rmfs.traffic`, and reacts to the events that it reports."""
+"""Converts tasks to commands for `rmfs.traffic`, and handles the events that traffic reports."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ _DRIVE, _LIFT, _SET_DOWN, _STATION = (
 class Dispatch:
     """Starts tasks and tracks robots.
 
-    A storage location where a robot stands, or to which it is sent, is reserved for it until it has
-    a plan to leave; only then may another robot be sent there. If a robot without work stands
-    beneath a pod that another robot is to fetch, the first is sent elsewhere, and the other starts
-    when the location is no longer reserved.
+    A storage location at which a robot stands, or to which a robot is sent, is reserved for that
+    robot until the robot has a plan to leave. Meanwhile, no other robot is sent there. If a robot
+    is to fetch a pod whose location is reserved for a robot without work, the robot without work is
+    sent elsewhere. The other robot starts as soon as the location is no longer reserved.
     """
 
     def __init__(
@@ -93,7 +93,7 @@ class Dispatch:
         self._command(robot, place, [(_DRIVE, place), (_LIFT, task.pod), *_way(task)])
 
     def _send_away(self, keeper: Robot) -> None:
-        """Make a robot without work leave; if it has nowhere to go it stays until it has."""
+        """Make a robot without work leave; if it has nowhere to go, it leaves later."""
         place = self._controllers[Problem.TA].rest_place(keeper)
         if place >= 0:
             self._begin(RestTask(keeper.index, place=place))
@@ -115,7 +115,7 @@ class Dispatch:
     # --- tasks prepared ahead -------------------------------------------------------------------
 
     def prepare(self, decision: Prepare, call: Call | None = None) -> None:
-        """Store the tasks prepared for a robot, and the optimiser call that gave them, if any."""
+        """Store the tasks prepared for a robot, and the optimiser call that led to them, if any."""
         robot, tasks = decision
         self.forget_prepared(robot)
         robot.prepared.extend(task.task() for task in tasks)
@@ -129,7 +129,7 @@ class Dispatch:
         robot.prepared.clear()
 
     def start_prepared(self, robot: Robot, consult: Consult) -> None:
-        """Start the first possible task prepared for a robot, and discard those before it."""
+        """Start the first of a robot's prepared tasks that is possible; discard those before it."""
         while robot.prepared:
             task = robot.prepared[0]
             if task.lacks_place and robot.pod >= 0:
@@ -149,7 +149,7 @@ class Dispatch:
     # --- reports of traffic ---------------------------------------------------------------------
 
     def departed(self, index: int, _place: int = -1) -> None:
-        """Release storage locations that a robot leaves, and send robots that wait for one."""
+        """Release storage locations that a robot leaves, and send the robots that wait for them."""
         robot = self._world.robots[index]
         if len(robot.places) < 2 and robot.waypoint in robot.places:
             return
@@ -171,7 +171,7 @@ class Dispatch:
         return self._world.robots[keeper].waypoint == place
 
     def lift_started(self, index: int, pod: int) -> None:
-        """Record that a robot starts to lift its pod; its next destination is that of its task."""
+        """Record that a robot starts to lift its pod, to take it to the destination of the task."""
         world = self._world
         robot = world.robots[index]
         assert robot.task is not None
@@ -182,7 +182,7 @@ class Dispatch:
         self._events.pod_lifted(world.now_s, pod, index, place)
 
     def at_head(self, index: int, station: int) -> None:
-        """Record that a robot has reached its station, and start its service there."""
+        """Record that a robot has reached its station, and let the station serve it."""
         world = self._world
         robot, reached = world.robots[index], world.stations[station]
         robot.station = station
@@ -205,7 +205,7 @@ class Dispatch:
 
 
 def _way(task: Task) -> list[tuple[int, int]]:
-    """Return the program of a robot that carries the pod of its task, or has none to carry."""
+    """Return the remaining steps of a task whose pod has been lifted, or that has no pod."""
     if task.station >= 0:
         return [(_STATION, task.station)]
     if task.stores:

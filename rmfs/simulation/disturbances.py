@@ -41,15 +41,15 @@ _LATE_MOTIONS = 4
 class Disturbance(NamedTuple):
     """One disturbance, from its start to its end.
 
-    Motions that start late, which are another kind of disturbance, are not recorded in this way.
+    Late motions are a further kind of disturbance, but are not recorded as `Disturbance` objects.
 
     Attributes
     ----------
     kind
         `breakdown`, `slow`, `closure`, `charger` or `elevator`.
     element
-        Index of the robot that breaks down or is slow, of the closed waypoint, of the charger
-        (among all stations), or of the elevator.
+        Index of the robot that breaks down or is slow, of the closed waypoint, of the station that
+        is the failed charger, or of the elevator.
     from_us, to_us
         Start and end in microseconds.
     """
@@ -71,9 +71,9 @@ class DisturbanceSource:
     Attributes
     ----------
     begun
-        The recorded disturbances, in the order of recording. While the end of one is not known,
-        its `to_us` is `FOR_EVER_US`. A breakdown is recorded together with its end, possibly
-        shortly before it starts.
+        All disturbances recorded so far, in the order of recording. While the end of a disturbance
+        is unknown, `to_us` is `FOR_EVER_US`. The start and end of a breakdown are recorded
+        together, possibly shortly before the breakdown starts.
 
     Raises
     ------
@@ -122,7 +122,7 @@ class DisturbanceSource:
         return [(one.element, one.from_us, one.to_us, share) for one in slow]
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return how many disturbances overlap a period, and their total duration in it, in s.
+        """Return how many disturbances overlap a period, and their total duration within it, in s.
 
         The durations of simultaneous disturbances are added up.
         """
@@ -137,7 +137,7 @@ class DisturbanceSource:
     def begin(self) -> None:
         """Schedule the first disturbance of each random kind, and all outages of elevators.
 
-        Late motions are left to traffic, which draws them from now on.
+        Late motions are not scheduled here: from now on, traffic draws them at random.
         """
         for kind, given in enumerate(self._given_by_kind()):
             if given is not None:
@@ -154,7 +154,7 @@ class DisturbanceSource:
             self._agenda.after(round(begin_s * 1e6), stop)
 
     def redraw(self) -> None:
-        """Draw anew the next disturbance of each random kind, and all late motions to come.
+        """Draw the next disturbance of each random kind anew, and all future late motions.
 
         Disturbances in progress continue, and outages of elevators keep their times.
         """

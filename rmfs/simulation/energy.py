@@ -36,10 +36,10 @@ class PodMasses(Observer):
     Parameters
     ----------
     given
-        The scenario's energy parameters, among them the mass of an empty pod, and that of the
-        goods in one unit of space.
+        The scenario's energy parameters, which include the mass of an empty pod, and the mass of
+        goods per unit of space.
     fleet
-        Traffic, which is notified of each change.
+        Traffic, which is notified of each change of a mass.
     """
 
     def __init__(self, given: Energy, world: World, fleet: Traffic) -> None:
@@ -48,7 +48,7 @@ class PodMasses(Observer):
         self._fleet = fleet
 
     def all_kg(self) -> list[float]:
-        """Return the mass of every pod with its contents, in kg, shape (P,)."""
+        """Return the masses of all pods with their contents, in kg, one per pod."""
         masses: list[float] = (self._empty_kg + self._kg_per_space * self._used).tolist()
         return masses
 

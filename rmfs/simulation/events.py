@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 class Events(Observer):
     """Passes every event to several observers, in order.
 
-    Events are frequent. For speed, if only one observer overrides a callback, its method replaces
-    that of this object; a callback that no observer overrides does nothing.
+    If only one observer overrides a callback, this object's method of that name is replaced by the
+    observer's method. This is for speed, as events are frequent. A callback that no observer
+    overrides does nothing.
     """
 
     def __init__(self) -> None:
@@ -68,7 +69,7 @@ class _Both:
 
 
 class _BothOfOne:
-    """The same for callbacks with one argument, and faster."""
+    """Does the same as `_Both` for callbacks with one argument, but faster."""
 
     __slots__ = ("_first", "_second")
 

@@ -9,7 +9,7 @@ class Fleet(Protocol):
     """Drives robots; implemented by `rmfs.traffic.Traffic`."""
 
     def command(self, robot: int, program: list[tuple[int, int]], /) -> None:
-        """Give a robot its next steps, as pairs of a `Step` and its argument."""
+        """Give a robot its next steps, each as a pair of a `Step` and the argument of that step."""
         ...
 
     def rest_waypoint(self, robot: int) -> int:

@@ -1,8 +1,8 @@
 """Copies of a running simulation in memory; for files, see `rmfs.simulation.saving`.
 
-A simulation is data that can be pickled: entries of the agenda are bound methods or partials of
-these, and generators of controllers are not part of its state. Copies are made by pickling; objects
-that never change are shared.
+The whole state of a simulation can be pickled: entries of the agenda are bound methods, or partials
+of bound methods, and the state contains no generators of controllers. Copies are made by pickling,
+but share objects that never change.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def fork(simulation: K) -> K:
 
 
 class Snapshot(Generic[K]):
-    """A saved state of a simulation, from which copies with redrawn futures are made.
+    """A saved state of a simulation, for copies whose future random events are drawn anew.
 
     Parameters
     ----------

@@ -27,12 +27,13 @@ class Inputs:
     Attributes
     ----------
     overrides
-        All overrides, as (path, value) pairs: those given, and those that a scenario of RAWSim-O
-        implies for the layout.
+        All overrides, as pairs of a path (list of keys) and a value: the given ones, and those that
+        a scenario of RAWSim-O implies for the layout.
     pacing
-        The overrides of the pacing; the first key of each path, `pacing`, is left out.
+        The overrides of the pacing; their paths lack the first key, `pacing`.
     notes
-        For each input imported from RAWSim-O files, what the import leaves out or changes.
+        Remarks on what an import from RAWSim-O files leaves out or changes, by input (`layout`,
+        `scenario` or `controllers`).
     """
 
     layout: Layout
@@ -52,7 +53,7 @@ def load_inputs(
     """Load the inputs of a run; see `rmfs.simulate`.
 
     Values that a scenario of RAWSim-O implies for the layout are applied first, so that the given
-    overrides win.
+    overrides take precedence.
 
     Raises
     ------
@@ -87,9 +88,9 @@ def load_inputs(
 
 
 def as_overrides(settings: Mapping[str, Any]) -> Overrides:
-    """Split the dotted keys of `settings` into paths; return (path, value) pairs.
+    """Split the dotted keys of `settings` into lists of keys; return (list of keys, value) pairs.
 
-    Classes among the values are replaced by names under which this process finds them.
+    A class given as a value is replaced by a name by which this process can find the class.
 
     Raises
     ------

@@ -81,7 +81,7 @@ class Kernel(Loop):
     world, view
         The state of the warehouse, and the read-only view of it that controllers get.
     interventions
-        For each exchange of a controller by `exchange`, its time (s) and the new controller.
+        One pair per call of `exchange`: the time of the call in s, and the new controller.
 
     Raises
     ------
@@ -227,22 +227,22 @@ class Kernel(Loop):
         self._due.signal(Trigger.START)
 
     def exchange(self, choice: Choice) -> None:
-        """Install a controller that a user has chosen, at this instant, and record the exchange."""
+        """Install, at this instant, a controller chosen by a user, and record the exchange."""
         self.interventions.append((self.world.now_s, choice))
         self.phase.exchange(choice)
 
     # --- looking ahead --------------------------------------------------------------------------
 
     def _snapshot(self, along: Any) -> Snapshot[Self]:
-        """Save the state of the run, without passive observers."""
+        """Save the state of the run, together with `along` but without passive observers."""
         return Snapshot(self, along, self._spectators)
 
     def take_over(
         self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
     ) -> None:
-        """Apply a decision, and install `base` for the later decisions of the problem.
+        """Apply a decision on a problem; from then on, the controller `base` decides the problem.
 
-        This is used in copies of the run, to try out the decision.
+        This method is called in copies of a run, to try out decisions.
 
         Parameters
         ----------
@@ -257,12 +257,14 @@ class Kernel(Loop):
         self._unsettled = True
 
     def redraw(self) -> None:
-        """Draw future arrivals and disturbances anew, after all random streams have been replaced.
+        """Draw future arrivals and disturbances anew.
+
+        This method is called in a copy of a run, after all random streams have been replaced.
 
         Raises
         ------
         InputError
-            If arrivals come from a file and so cannot be drawn.
+            If arrivals cannot be drawn, because they are read from a file.
         """
         self.arrivals.redraw()
         self.disturbances.redraw()

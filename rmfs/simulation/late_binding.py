@@ -23,14 +23,15 @@ if TYPE_CHECKING:
 class LateBinding(Observer):
     """Adds new work to tasks while their pods are being carried to a station.
 
-    It does so when an order is assigned or queued (put into the pool of a station), a bundle is
-    assigned, or a pod is lifted. Work is added to a task only while a robot carries its pod and the
-    task still has units to pick or bundles to store; when none are left, TA decides what the robot
-    does next. If several pods qualify, the one that reaches the station first is given work first.
+    Work is added when an order is assigned or queued (put into the pool of a station), when a
+    bundle is assigned, and when a pod is lifted. A task gets new work only while a robot carries
+    the pod of the task, and while the task still has units to pick or bundles to store. A robot
+    whose task has no work left gets a new task from TA. If several pods can serve an order, the one
+    that will reach the station first gets the work first.
 
-    In addition, requests of queued orders are bound to a pod when its task starts. The parameters
-    of the PPS controller determine whether work is added at all, and whether requests of queued
-    orders are bound.
+    In addition, when a picking task starts, requests of queued orders are bound to the pod of the
+    task. The parameters of the PPS controller determine whether work is added at all, and whether
+    requests of queued orders are bound.
     """
 
     def __init__(
@@ -58,15 +59,15 @@ class LateBinding(Observer):
         self._bundles.append(bundle)
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:
-        """Record a pod that a robot starts to lift, if the robot is to bring it to a station."""
+        """Record that a robot starts to lift a pod, if the pod is to be brought to a station."""
         task = self._world.robots[robot].task
         if task is not None and task.station >= 0:
             self._pods.append(pod)
 
     def task_started(self, time_s: float, robot: int, kind: str, station: int) -> None:
-        """Bind requests of queued orders to the pod of a task that has just started.
+        """Bind requests of queued orders to the pod of a picking task that has just started.
 
-        In the task, they come after the other requests.
+        These requests become the last ones of the task.
         """
         task = self._world.robots[robot].task
         if isinstance(task, PickTask):
@@ -75,7 +76,7 @@ class LateBinding(Observer):
                 self._bind_queued(task, queued.values(), late_bound=False)
 
     def bind(self) -> None:
-        """Extend tasks by the work that has become available since the last call."""
+        """Add work that has become available since the last call of this method to tasks."""
         given = self._controllers[Problem.PPS].parameters
         if given.late_bundles:
             for bundle in self._bundles:

@@ -1,4 +1,4 @@
-"""Trials: copies of a run in which decisions are tried out; their futures are drawn anew."""
+"""Trials of decisions, in copies of a run whose future random events are drawn anew."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Trial(Protocol):
     def take_over(
         self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
     ) -> None:
-        """Apply a decision, and install the rule `base` for the later decisions of the problem."""
+        """Apply a decision on a problem; from then on, the rule `base` decides the problem."""
         ...
 
     def run_until(self, time_s: float) -> Any:
@@ -115,7 +115,7 @@ class Earnings(Observer):
         self._value = 0.0
 
     def run_started(self, run: Observed) -> None:
-        """Keep a reference to the traffic model, which counts motion."""
+        """Keep a reference to the traffic model, which measures the distance driven."""
         self._traffic = run.traffic
         self._driven_m = self._metres() if self._goal.distance_m else 0.0
 
@@ -148,7 +148,7 @@ class Earnings(Observer):
     def value(self, world: World) -> float:
         """Return the value of the trial, with the costs of distance and overdue orders deducted.
 
-        For an order that is not completed, the overdue time is counted up to now.
+        For an order that is not yet complete, the overdue time is counted up to the present time.
         """
         goal, value = self._goal, self._value
         if goal.overdue_s:

@@ -37,7 +37,7 @@ STALL_S = 3600.0
 
 
 class StalledError(RuntimeError):
-    """Nothing has moved for `STALL_S`, and robots wait for a path; the message lists all robots."""
+    """Nothing has moved for `STALL_S`, yet robots wait for a path; the message lists all robots."""
 
 
 class Loop:
@@ -110,8 +110,8 @@ class Loop:
         RuntimeError
             If a decision must be made outside the simulation; use `step` instead.
         StalledError
-            If no robot moves any more. With the default path planner, this is possible only in a
-            layout that is not well-formed.
+            If nothing has moved for `STALL_S` while robots waited for a path. With the default path
+            planner, this is possible only in a layout that is not well-formed.
         RuleError
             If a user's controller decides something impossible.
         OptimiserError
@@ -127,7 +127,7 @@ class Loop:
         progress: Callable[[float, float], None] | None = None,
         limit: Limit | None = None,
     ) -> None:
-        """Simulate to the end, like `run`, but never beyond a moving limit.
+        """Simulate to the end, like `run`, but never beyond a limit that changes over time.
 
         Parameters
         ----------
@@ -163,8 +163,8 @@ class Loop:
         Returns
         -------
         Decision or None
-            The decision, which must be answered before the next step; until then it is returned
-            again. None if the run has ended.
+            The decision. Until it has been answered, further calls return it again. None if the run
+            has ended.
         """
         return self._go_on(self._end_us)
 
@@ -235,7 +235,7 @@ class Loop:
 
     @property
     def decision(self) -> Decision | None:
-        """The decision that waits to be made outside the simulation; None if there is none."""
+        """The pending decision, to be made outside the simulation; None if there is none."""
         question = self.phase.outside.pending
         return None if question is None else Decision(question, self)
 

@@ -1,4 +1,4 @@
-"""Passes questions to optimisers, and their answers back."""
+"""Passes questions of controllers to optimisers, and answers of optimisers to controllers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Answers(Protocol):
         ...
 
     def came(self, call: Call) -> None:
-        """Record an answer that the decision phase of this instant is to pass to the controller."""
+        """Record an answer; the decision phase of this instant passes it to the controller."""
         ...
 
 
@@ -54,11 +54,11 @@ class OptimiserGateway:
 
     @property
     def waits(self) -> bool:
-        """Whether solvers may run while the simulation goes on, then only up to `limit_us`."""
+        """Whether solvers run beside the simulation; it may then proceed only up to `limit_us`."""
         return self._pacing.waits
 
     def begin(self, modules: Iterable[str]) -> None:
-        """Prepare the optimisers, before wall time is measured.
+        """Prepare the optimisers; called before the measurement of wall time begins.
 
         Parameters
         ----------

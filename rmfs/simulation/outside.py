@@ -1,15 +1,17 @@
 """Decisions made outside the simulation: pending questions, and how a run waits for answers.
 
-While a run waits for an answer, no generator of a controller is suspended: everything that the run
-needs to continue is data, so the run can be copied and saved.
+The answers come from a program outside the simulation. While a run waits for an answer, none of its
+controllers has a suspended generator. The run is therefore plain data, which can be copied and
+saved.
 
-A question asked by the decision phase itself is a *turn*: the program outside the simulation makes
-one decision after another, and finally declines to make a further one. A question that a TA rule
-asks while it decides interrupts the rule (`Awaits`). When the program has answered, the rule is
-restored to its state after its last decision and is asked for decisions again; the answers to its
-questions since that decision are stored, and it receives them as it repeats the questions. If a
-rule was interrupted while it carried out the answer of an optimiser, it continues with the rest of
-that answer.
+A question asked by the decision phase itself is a *turn*: the program makes one decision after
+another, and finally declines to make a further one.
+
+A question that a TA rule asks while it decides interrupts the rule (`Awaits`). The program's answer
+is stored. The rule is then reset to its state after its last decision, and asked for decisions
+again. It repeats the questions that it has asked since that decision, and receives the stored
+answers. A rule that was interrupted while it carried out the answer of an optimiser continues with
+the rest of that answer.
 """
 
 from __future__ import annotations
@@ -37,7 +39,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
     Raises
     ------
     InputError
-        If one of them does not exist, or cannot be decided outside the simulation with these
+        If a problem does not exist, or cannot be decided outside the simulation with these
         controllers.
     """
     valid = [str(problem) for problem in Problem if problem is not Problem.PP]
@@ -69,7 +71,7 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
 
 
 class Awaits(BaseException):
-    """A question must be answered outside the simulation before the decision phase can go on."""
+    """A question must be answered outside the simulation before the decision phase can continue."""
 
     @property
     def question(self) -> Question:
@@ -89,19 +91,21 @@ class Outside:
     pending
         The question waiting for an answer.
     given
-        Questions of TA that have been answered since its last decision, each with the answer.
+        Questions that TA has asked since its last decision and that have been answered, each with
+        the answer.
     taken
-        Number of these answers that TA has received since it was last asked for decisions.
+        Number of answers in `given` that TA has received since it was last asked for decisions.
     decided
         Number of decisions in the current turn so far.
     doing
-        A decision of TA, made outside, that leaves a choice to PPS, PSA or repositioning; it is
-        applied when that choice has been made.
+        A TA decision, made outside, that leaves a choice to PPS, PSA or repositioning; the decision
+        is applied when this choice has been made.
     refused
-        Decisions of the current turn that failed because no pod, place or move was found.
+        Decisions of the current turn that failed because no pod, storage location or move was
+        found.
     is_idle
-        Whether a turn of TA is to be ended without asking, because there would be nothing to
-        decide; by default, TA is always asked.
+        Function of the view that returns whether TA has nothing to decide; if so, the turn of TA is
+        ended without a question. Default: none, so that a question is asked in every turn of TA.
     advisor
         Iterator over the decisions that the installed rule would make in the current turn.
     advised
@@ -125,11 +129,11 @@ class Outside:
         return self.__dict__ | {"advisor": None, "advised": None}
 
     def knows(self, question: Question) -> bool:
-        """Whether the next answer in `given` belongs to this question of TA."""
+        """Whether the next answer in `given` is the answer to this question of TA."""
         return self.taken < len(self.given) and self.given[self.taken][0] == question
 
     def drop_taken(self) -> None:
-        """Drop the answers received so far: they concern prepared tasks, which do not ask again."""
+        """Drop the answers received so far, which the start of prepared tasks has used up."""
         del self.given[: self.taken]
         self.taken = 0
 

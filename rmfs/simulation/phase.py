@@ -42,10 +42,10 @@ class DecisionPhase:
     """Processes the steps that are due at the present instant; in most steps, a controller decides.
 
     The order of the steps is: answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding,
-    PPS, PSA, CA, TA. After each step, the first one in this order that is then due comes next. PPS,
-    PSA and repositioning decide when TA asks them; in the steps of PPS and PSA, their controllers
-    can only ask optimisers. TA is also asked at the times that the controller of repositioning
-    specifies.
+    PPS, PSA, CA, TA. After each step, the first due step in this order comes next. The controllers
+    of PPS, PSA and repositioning decide only when TA asks them. In the steps PPS and PSA, the
+    controllers of these problems can only ask optimisers. The step TA is also due at the times that
+    the controller of repositioning specifies.
 
     Attributes
     ----------
@@ -95,18 +95,17 @@ class DecisionPhase:
         self._alarms.connect(steps.STEP_OF)
 
     def connect(self, applying: Applying, arrivals: ArrivalProcess) -> None:
-        """Set the part that applies decisions, and the one that creates orders and bundles."""
+        """Set the objects that apply decisions (`applying`) and create arrivals (`arrivals`)."""
         self._applying, self._arrivals = applying, arrivals
         self._steps = self._what_is_done()
 
     def exchange(self, choice: Choice) -> None:
         """Install another controller for a problem; it is asked for decisions at this instant.
 
-        What the previous controller has decided is part of the world and remains: bundles keep
-        their pods and stations, orders their stations, and robots their tasks. What only the
-        previous controller could continue is undone: pools are emptied, prepared tasks are dropped,
-        and bundles that have not been released yet are released if the new controller would never
-        release them.
+        Decisions that have been applied remain: bundles keep their pods and stations, orders their
+        stations, and robots their tasks. If the class of the controller changes, pools are emptied
+        (for POA), or prepared tasks are dropped (for TA). If the new controller of RPS is a dummy,
+        which would never release bundles, all unreleased bundles are released.
         """
         problem, new = choice.problem, choice.controller
         if type(self._controllers[problem]) is not new:
@@ -280,7 +279,7 @@ class DecisionPhase:
     # --- answers of optimisers ------------------------------------------------------------------
 
     def came(self, call: Call) -> None:
-        """Record an answer, which is passed to the controller in the phase of this instant."""
+        """Record an answer; the decision phase of this instant passes it to the controller."""
         self._answers.append(call)
         self._due.want_answers()
 
@@ -335,7 +334,7 @@ class DecisionPhase:
     def take(self, decision: Any) -> None:
         """Apply a decision made outside the simulation.
 
-        PPS, PSA or repositioning make the choices that it leaves open.
+        If the decision leaves choices open, PPS, PSA or repositioning makes them.
 
         Raises
         ------
@@ -348,7 +347,7 @@ class DecisionPhase:
         self.do_outside()
 
     def do_outside(self) -> None:
-        """Apply the decision `outside.doing`, or add it to `outside.refused` if it has failed."""
+        """Apply the decision `outside.doing`, or add it to `outside.refused` if it fails."""
         outside, decision = self.outside, self.outside.doing
         outside.taken = 0
         match decision:
@@ -376,7 +375,7 @@ class DecisionPhase:
         return iter(decisions)
 
     def advice_to(self, question: Question) -> Any:
-        """Return the installed rule's answer to a question of TA; it is not carried out."""
+        """Return the answer that the installed rule would give to a question asked by TA."""
         rule = self._controllers[question.problem]
         robot = self._world.robots[question.robot]
         found = self._say(rule, robot, question)

@@ -41,16 +41,16 @@ if TYPE_CHECKING:
 class Run(Results):
     """A finished run.
 
-    When sent to another process, it takes its tables and trace along, but not `world`, `traffic`,
-    `recorder` and `disturbances`.
+    A run that is sent to another process (pickled) contains its tables and trace, but not `world`,
+    `traffic`, `recorder` and `disturbances`.
 
     Attributes
     ----------
     layout, scenario, controllers
         The simulated inputs, after overrides.
     names
-        Layout, scenario and controllers as specified by the user; controllers installed
-        interactively during the run are appended to the name of the controllers.
+        Layout, scenario and controllers as specified by the user. Controllers that were installed
+        interactively during the run are appended to the third name.
     overrides
         Changed parameters as (path, value) pairs: those given by the user, and those that a
         scenario of RAWSim-O implies for the layout.
@@ -75,8 +75,7 @@ class Run(Results):
     events
         The recorded events; only if the trace was recorded.
     interventions
-        For each interactive exchange of a controller, the time in s and the new controller, which
-        `names` includes as well.
+        For each interactive exchange of a controller, the time in s and the new controller.
     idle_rules
         Descriptions of rules that decided nothing for a long time although work waited.
     """
@@ -115,7 +114,7 @@ class Run(Results):
 
     @property
     def series(self) -> pd.DataFrame:
-        """The table `series`: measures per minute."""
+        """The table `series`: one row of measures for each minute."""
         return self.table("series")
 
     @property
@@ -165,7 +164,7 @@ class Run(Results):
 
     @property
     def slow_robots(self) -> list[tuple[int, int, int, float]]:
-        """Periods in which robots were slow: robot, start and end (us), share of the top speed."""
+        """Slow periods of robots: (robot, start in us, end in us, share of the top speed)."""
         return self.disturbances.slow if self._sent is None else self._sent.slow_robots
 
     def _tables(self) -> dict[str, pd.DataFrame]:

@@ -75,7 +75,7 @@ def simulate(
         Parameters as (path, value) pairs, for example `(["layout", "robots"], 16)`; for a parameter
         that is also in `set`, the value in `set` is used.
     observers
-        Notified of everything that happens, in addition to the recorder of the standard measures.
+        Objects that are notified of every event, as is the recorder of the standard measures.
     measures
         Additional measures: classes derived from `rmfs.Measure`, or references to them
         (`module:Class`, `path/to/file.py:Class`, or the name of an installed measure).
@@ -88,7 +88,7 @@ def simulate(
     trace
         Whether to record the complete motion of the robots and all events.
     events
-        Log in which events are recorded, and which can be read during the run; implies `trace`.
+        Log in which all events are recorded; it can be read during the run. Implies `trace`.
     streams
         Records all arriving orders and bundles, for `rmfs.scenario.write_stream`.
     progress
@@ -102,7 +102,7 @@ def simulate(
         Creates the traffic layer from the arguments of `Traffic`; used by `rmfs.demonstrator` for
         real and emulated robots.
     resume
-        File from which to resume; `Simulation.save` wrote it in a run with the same inputs.
+        File from which to resume, written by `Simulation.save` in a run with the same inputs.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def simulate(
 
 
 class Simulation(Kernel):
-    """A run that can be simulated in steps, with the same results as by `simulate`.
+    """A run that can be simulated in steps, with the same results as those of `simulate`.
 
     Parameters
     ----------

@@ -57,13 +57,16 @@ class Hands(Protocol):
         ...
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the pick of a task to make next; None: its first one for an order on a slot."""
+        """Return the pick of a task to make next, or None if the picker has no preference.
+
+        With None, the first pick of the task for an order that has a slot is made.
+        """
         ...
 
     def handle(self, station: int, pod: int, sku: int, station_s: float, robot_s: float) -> Handled:
         """Start to pick a unit; return how it is handled.
 
-        `station_s` and `robot_s` are the times in s for which it occupies station and robot
+        `station_s` and `robot_s` are the times in s for which the unit occupies station and robot
         according to the layout.
         """
         ...
@@ -73,14 +76,14 @@ class PickService:
     """The service of one pick station.
 
     A unit leaves its pod, and its request is fulfilled, when its pick starts. An order leaves its
-    slot when the station has finished the last unit of the order. When all requests that remain for
-    a pod are of orders in the station's pool, the pod waits if a slot is about to become free, and
+    slot when the station has finished the last unit of the order. When all remaining requests for a
+    pod belong to orders in the station's pool, the pod waits if a slot is about to become free, and
     is sent away otherwise.
 
     Attributes
     ----------
     outlet
-        Destination of orders; None if they are complete after their last pick.
+        Destination of orders; None if orders are complete after their last pick.
     hands
         The pickers; None if every unit takes the times given in the layout.
     """
@@ -125,7 +128,7 @@ class PickService:
             self._agenda.when_settled(partial(self._pick_or_leave, task))
 
     def _pick_or_leave(self, task: PickTask) -> None:
-        """Send away a pod that has only requests of queued orders, which are open again."""
+        """Continue a task, or end it and reopen its requests if only orders in the pool need it."""
         robots, here = self._world.robots, self._station.robot
         if here < 0 or robots[here].task is not task:
             return
@@ -183,7 +186,7 @@ class PickService:
         self._finished.clear()
 
     def hand_on_held(self, order: Order, *, by_hand: bool = False) -> None:
-        """Pass on an order, or a part of one, that the outlet did not take before."""
+        """Pass on an order, or a part of one, that had to wait for the outlet."""
         self._complete(order, by_hand)
         self._agenda.when_settled(self.go_on)
 
@@ -200,7 +203,7 @@ class PickService:
 class ReplenishmentService:
     """The service of one replenishment station.
 
-    From the start of its transfer, a bundle counts as stored in its pod, and no longer as load of
+    As soon as its transfer starts, a bundle counts as stored in its pod, and no longer as load of
     the station.
     """
 
@@ -273,7 +276,7 @@ class VisitService:
         self.world = world
 
     def seconds(self, task: VisitTask) -> float:
-        """Return how long the pod of a task stays, in s, now that it has reached the station."""
+        """Return how long the pod of a task stays, in s; called when it has reached the station."""
         raise NotImplementedError
 
     def done(self, task: VisitTask) -> None:

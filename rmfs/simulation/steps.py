@@ -85,7 +85,7 @@ class Due:
             self._masks.append(mask)
 
     def signal(self, trigger: Trigger, subject: Any = None) -> None:
-        """Process a trigger: make the steps due that follow from it, and call its listeners."""
+        """Process a trigger: mark as due the steps that it causes, and call its listeners."""
         self.bits |= self._masks[trigger]
         for listener in self._controllers.listeners[trigger]:
             listener(trigger, subject)
@@ -103,7 +103,7 @@ class Due:
         self.bits |= 1 << ANSWERS
 
     def place_left(self) -> None:
-        """Record that a robot has left a storage location, for which others may be waiting."""
+        """Record that a robot has left a storage location; other robots may be waiting for it."""
         if self._world.asking:
             self.bits |= 1 << TASKS
 

@@ -88,7 +88,8 @@ def fork(core: Core, options: Options, memo: dict[int, Any]) -> tuple[Core, Opti
 def to_bytes(core: Core, options: Options) -> bytes:
     """Return a core as bytes.
 
-    They consist of a line of JSON, the pickled planner if it is written in Python, and the state.
+    The bytes consist of a line of JSON, the planner (pickled) if it is written in Python, and the
+    state of the core.
     """
     planner = options.planner
     code = b"" if planner.code is None else pickle.dumps(planner.code)

@@ -63,8 +63,8 @@ def read_guidance(path: Path, layout: Layout) -> GuidedEdges:
     Raises
     ------
     InputError
-        If the file cannot be read, is invalid, belongs to another layout, or names an edge twice
-        or one that does not exist.
+        If the file cannot be read, is invalid, belongs to another layout, names an edge twice, or
+        names an edge that does not exist.
     """
     content = read_bounded(path)
     try:

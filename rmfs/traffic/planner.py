@@ -93,14 +93,14 @@ class PathPlanner(Protocol):
         Yields
         ------
         Question
-            One at a time; the value sent back is the answer.
+            A question; its answer is the value of the `yield` expression.
 
         Returns
         -------
         list
-            A path for each agent, or None: the agent then keeps its earlier path, or stays if it
-            has none, and another call follows. If a path does not reach the goal, the core appends
-            the rest without checking it for conflicts.
+            A path or None for each agent. With None, the agent keeps its earlier path (without
+            one, it stays where it is), and the planner is called again. If a path does not reach
+            the goal, the core appends the rest without checking it for conflicts.
         """
         ...
 

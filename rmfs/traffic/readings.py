@@ -22,7 +22,7 @@ class Readings:
     def motion(self) -> dict[str, NDArray[Any]]:
         """Return totals per robot since the last reset, up to now, each of shape (R,).
 
-        The distances are `distance_m` and the part of it with a pod, `loaded_distance_m`. The times
+        The distances are `distance_m` and `loaded_distance_m` (the part with a pod). The times
         `moving_s`, `turning_s`, `waiting_s` (standing on the way), `served_s` (standing at a
         station), `idle_s`, `transfer_s` (lifting, setting down) and `riding_s` (elevators) add up
         to the elapsed time. `queueing_s`, the time from entering a queue zone to reaching the
@@ -58,13 +58,15 @@ class Readings:
     def heat(self) -> dict[str, NDArray[Any]]:
         """Return how often robots reached waypoints, and how long they stood there.
 
-        Counts start at the last reset; the time for which idle robots stand is not counted. Per
-        waypoint, shape (N,): `visits` (robots that passed or stopped) and `waiting_s`, and the
-        parts of these with a pod, `loaded_visits` and `loaded_waiting_s`. Per pair of waypoint and
-        purpose that occurred, shape (M,): `stays_waypoint`, `stays_purpose`, `stays_visits` and
-        `stays_waiting_s`. The purpose is the number of the station for which a robot works, also
-        while it fetches the pod; S, the number of stations, if the robot stores a pod or fetches
-        one for no station; and S + 1 for everything else.
+        Counts start at the last reset; the time for which idle robots stand is not counted. Columns
+        with one entry per waypoint, shape (N,), are `visits` (robots that passed or stopped),
+        `waiting_s` and, counting only robots with a pod, `loaded_visits` and `loaded_waiting_s`.
+
+        Columns with one entry for each pair of waypoint and purpose that occurred are
+        `stays_waypoint`, `stays_purpose`, `stays_visits` and `stays_waiting_s`. The purpose is the
+        number of the station for which a robot works, also while it fetches the pod. It is S, the
+        number of stations, if the robot stores a pod or fetches one for no station, and S + 1 in
+        all other cases.
         """
         counted: dict[str, NDArray[Any]] = self._core.heat()
         at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])
@@ -88,7 +90,7 @@ class Readings:
         energy is not counted) and `awaited_s` (how long the robot waited for its plan at the
         beginning). A trip to a station is finished when the robot reaches the station, and its
         distance and energy include the queue; but `t1_us` is the time at which the robot entered
-        the queue zone, and `unhindered_s` refers to the way up to there.
+        the queue zone, and `unhindered_s` refers to the path up to this zone.
         """
         return self._core.trips()
 
@@ -96,7 +98,7 @@ class Readings:
         """Return the recorded motion so far, in rows sorted by robot and time.
 
         The columns are `robot`, `t0_us`, `t1_us`, `kind` (`Piece`), `from_wp`, `to_wp`,
-        `heading0_rad`, `heading1_rad`, `pod` (the one carried; -1 if none), `top_speed_m_s`.
+        `heading0_rad`, `heading1_rad`, `pod` (the carried pod; -1 if none), `top_speed_m_s`.
 
         Raises
         ------
@@ -109,9 +111,9 @@ class Readings:
         """Follow a run: return the part of the trace that previous calls have not returned.
 
         The motion that each robot is currently executing is included, and is returned again until
-        it has ended. A row therefore replaces everything that earlier calls returned for its robot
-        from `t0_us` on. If a robot stands still during several calls, it gets several consecutive
-        rows, which `joined_holds` merges.
+        it has ended. A row therefore replaces all motion of the same robot after the row's `t0_us`
+        that earlier calls returned. If a robot stands still during several calls, it gets several
+        consecutive rows, which `joined_holds` merges.
 
         Parameters
         ----------
@@ -133,12 +135,13 @@ class Readings:
     def counters(self) -> dict[str, float]:
         """Return counters of path planning since the last reset.
 
-        They are `plans` (of legs), `plan_failures`, `replans`, `refusals` (a rolling planner
-        requested a run that was not free), `improvements` (plans were replaced by better ones),
-        `expansions` (of labels), `cost_tables` (tables of travel times computed since time zero),
-        and the wall time `planning_s` in s. `planning_charged_s`, the simulated time that plans
-        took, is 0 unless `Traffic.set_pace` was called. `motions`, `late_motions`, the total
-        `lateness_s` and `repairs` (plans replaced because another robot was late) are 0 unless
+        The counters are `plans` (of legs), `plan_failures`, `replans`, `refusals` (paths of a
+        rolling planner that were discarded because not even their first straight run was free),
+        `improvements` (plans replaced by better ones), `expansions` (labels expanded),
+        `cost_tables` (tables of travel times computed since time zero), and the wall time
+        `planning_s` in s. `planning_charged_s`, the simulated time in s that plans took, is 0
+        unless `Traffic.set_pace` was called. `motions`, `late_motions`, `lateness_s` (their total
+        delay in s) and `repairs` (plans replaced because another robot was late) are 0 unless
         `Traffic.set_lateness` was called.
         """
         counts: dict[str, float] = dict(self._core.counters())
@@ -164,7 +167,7 @@ class Readings:
         return self._core.call_times() / 1e9
 
     def reset_statistics(self) -> None:
-        """Start all statistics anew, except those since time zero; the trace is kept."""
+        """Restart all statistics except those that count from time zero; the trace is kept."""
         self._core.reset_statistics()
 
     def state_report(self) -> str:

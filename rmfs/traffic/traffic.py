@@ -43,9 +43,11 @@ class Traffic(Readings):
     advance
         Function of a time limit in us. It advances to the next time at which there are events, but
         not beyond the limit, and returns these events as tuples with the fields of `TrafficEvent`.
-        A second argument leaves out kinds of events: a bit set, with bit k for `EventKind(k)`.
+        A second argument can leave out kinds of events: an integer whose bit k is set if events of
+        `EventKind(k)` are not wanted.
     command
-        Function that gives a robot its program, a list of pairs of a `Step` and its argument.
+        Function of a robot and a program, which it gives to the robot. A program is a list of pairs
+        of a `Step` and its argument.
 
     Raises
     ------
@@ -150,7 +152,7 @@ class Traffic(Readings):
         loaded
             Whether the robot carries a pod.
         robot
-            Any robot of the kind for which times are wanted.
+            Index of a robot; the times are valid for all robots of its kind.
 
         Returns
         -------
@@ -175,7 +177,7 @@ class Traffic(Readings):
         return self._core.travel_times_from(waypoint, kind, loaded)
 
     def plan(self, robot: int) -> list[PlannedMove]:
-        """Return the moves of a robot's plan that have not ended, in their sequence."""
+        """Return the moves of a robot's plan that have not ended, in their order."""
         return [PlannedMove(*move) for move in self._core.plan(robot)]
 
     def delay(self, robot: int, by_us: int, *, begun: bool = False) -> bool:
@@ -195,17 +197,17 @@ class Traffic(Readings):
 
         Returns
         -------
-        Whether the delay was possible. It is not, and nothing is changed, if `begun` is false and
-        motion in progress would have to be postponed, or if moves would have to wait for one
-        another in a circle.
+        Whether the delay was possible; if not, nothing is changed. A delay is impossible if moves
+        would have to wait for one another in a circle, or if motion in progress would have to be
+        postponed although `begun` is false.
         """
         return self._core.delay(robot, by_us, begun)
 
     def clearance(self, robot: int) -> list[int]:
         """Return the waypoints ahead of a robot to which it may drive now.
 
-        They belong to its present run or, if it stands, to its next one, and are in the sequence of
-        the run. All robots that were to use them earlier have left them.
+        They belong to its present straight run or, if it stands, to its next one, and are in the
+        order in which it reaches them. All robots that were to use them earlier have left them.
         """
         return self._core.clearance(robot)
 
@@ -215,23 +217,24 @@ class Traffic(Readings):
         Parameters
         ----------
         rests
-            For each robot the waypoint at which it stands or will stop, its heading in radians
-            (that of an edge), and the time in microseconds from which it stands there. None for a
-            robot that continues its present run as far as the path is clear.
+            For each robot, the waypoint at which it stands or will stop, its heading there in
+            radians (the direction of an edge), and the time in microseconds from which it stands
+            there. None for a robot that continues its present straight run as far as the path is
+            clear.
 
         Raises
         ------
         ValueError
             If two robots would stand at one waypoint, or a heading or waypoint does not exist;
-            nothing has changed then.
+            then nothing is changed.
         """
         self._core.regroup(list(rests))
 
     def hold(self, robot: int, by_us: int) -> int | None:
         """Simulate a breakdown: let a robot stand still for `by_us` at its next stop.
 
-        Robots behind it wait for it. All robots keep their paths, and the sequence in which they
-        use waypoints.
+        Robots behind it wait for it. All robots keep their paths, and the order in which they use
+        waypoints does not change.
 
         Returns
         -------
@@ -246,10 +249,10 @@ class Traffic(Readings):
     ) -> None:
         """Let motions begin late from now on, each with the same probability.
 
-        Lateness is drawn just before a robot turns for a run, so that no plan anticipates it.
-        Robots behind the late robot wait for it. The order in which robots use waypoints changes
-        only by `repair`. A delay that would force a driving robot to stop is applied at the late
-        robot's next stop instead.
+        A delay is drawn just before a robot turns towards its next straight run, so no plan
+        anticipates the delay. Robots behind the late robot wait for it. The order in which robots
+        use waypoints can change only with `repair`. A delay that would force a driving robot to
+        stop is applied at the late robot's next stop instead.
 
         Parameters
         ----------
@@ -258,10 +261,10 @@ class Traffic(Readings):
         least_us, most_us
             Shortest and longest delay in microseconds, uniformly distributed.
         repair
-            Whether to replan each robot that has to wait for a late robot for more than a second:
-            alone or, if that does not help, together with the late robot and ahead of it. New plans
-            are kept if they decrease the sum of arrival times. Without effect with rolling
-            planners.
+            Whether to replan each robot that has to wait for a late robot for more than a second.
+            It is replanned alone or, if this does not help, together with the late robot and before
+            it. New plans are kept only if they decrease the sum of arrival times. With rolling
+            planners, `repair` has no effect.
         seed
             Seed of the draws, below 2^64.
 
@@ -288,9 +291,9 @@ class Traffic(Readings):
     ) -> None:
         """Let plans of trips take time from now on; a robot departs when its plan is ready.
 
-        Only for planners per leg, which plan trip by trip. When a planner begins with a plan, it
-        takes the reservations of that moment as given and plans a departure that is not before the
-        end of the planning time, but it reserves the route at once.
+        Only for planners per leg, which plan trip by trip. A plan is made around the reservations
+        that exist when planning begins. Its departure is not before the end of the planning time,
+        but its route is reserved as soon as planning begins.
 
         Parameters
         ----------
@@ -300,8 +303,8 @@ class Traffic(Readings):
             Simulated time that is charged. `fixed`: microseconds per plan. `work`: microseconds per
             search, and per label. `wall`: seconds per second of wall time.
         tape
-            Searches of another run, for `replay`: robot, start (us), labels and time taken (us) of
-            each.
+            For `replay`, the searches of another run, each as (robot, start in us, number of
+            labels, time taken in us).
         period_us
             Plans are begun only at multiples of this time; 0: at any time.
         lazy
@@ -323,7 +326,7 @@ class Traffic(Readings):
         Parameters
         ----------
         level
-            Number of the speed: 0 for its own top speed, k for the k-th of `slow_shares`.
+            0: the robot's own top speed; k from 1: reduced to the k-th share in `slow_shares`.
 
         Returns
         -------
@@ -415,13 +418,13 @@ class Traffic(Readings):
     def exchange_battery(self, robot: int, level_j: float) -> None:
         """Give a robot that stands still another battery, which holds `level_j` joules.
 
-        The energy gained counts as charged.
+        The additional energy counts as charged.
         """
         self._core.exchange_battery(robot, level_j)
 
 
 def _of(core: Core, options: Options) -> dict[str, Any]:
-    """What of traffic is the core's."""
+    """Return the attributes of `Traffic` that belong to a core."""
     return {
         "_core": core,
         "_options": options,

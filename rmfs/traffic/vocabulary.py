@@ -1,4 +1,4 @@
-"""Vocabulary of traffic: the commands that it takes and the events that it reports."""
+"""Types of the interface to `Traffic`: steps of commands, events, rows of traces, and trips."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ class Step(IntEnum):
 
 
 class EventKind(IntEnum):
-    """Kinds of events of traffic, each with the meaning of `TrafficEvent.value` in brackets."""
+    """Kinds of traffic events.
+
+    The description of each kind states in brackets what `TrafficEvent.value` contains.
+    """
 
     ARRIVED = 0
     """The robot has finished a drive (waypoint)."""
@@ -41,7 +44,7 @@ class EventKind(IntEnum):
 class Piece(IntEnum):
     """Kinds of rows in a trace.
 
-    A run is recorded as GUIDED if it was delayed on its way: the robot's path is known, but not
+    A straight run on which the robot was delayed is recorded as GUIDED: its path is known, but not
     where on the path the robot was at each time.
     """
 
@@ -64,7 +67,7 @@ class TripKind(IntEnum):
 
 
 class TrafficEvent(NamedTuple):
-    """An event of traffic; `Traffic.advance` returns plain tuples of these values in this order."""
+    """A traffic event; `Traffic.advance` returns plain tuples of these values in this order."""
 
     time_us: int
     kind: int
@@ -73,7 +76,7 @@ class TrafficEvent(NamedTuple):
 
 
 class PlannedMove(NamedTuple):
-    """One move of a plan: a straight run or an elevator ride from rest to rest."""
+    """One move of a plan: a straight run or an elevator ride that begins and ends at rest."""
 
     from_waypoint: int
     to_waypoint: int

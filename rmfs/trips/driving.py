@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.trips.streams import Command, TripStream
 
 STALL_S = 1800.0
-"""Driving is given up if no event occurs for this time, in s, while robots wait for a path."""
+"""Driving stops early if no event occurs for this time, in s, while robots wait for a path."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,11 @@ class TripRun:
     Attributes
     ----------
     warmup_s, end_s
-        Simulated time before counting starts, and end of the simulation, in s.
+        Simulated times at which the warm-up and the simulation end, in s.
     wall_s
         Wall time after the warm-up, in s.
     stalled
-        Empty, or the positions of all robots if nothing could move any more.
+        Positions of all robots if none could move any more; otherwise empty.
     report
         Result of the trace checker, if it was requested.
     """
@@ -91,16 +91,16 @@ def drive(
     Parameters
     ----------
     duration_s, warmup_s
-        Simulated time that is measured, and simulated time before it, in s.
+        Simulated time that is measured, and that of the warm-up before it, in s.
     proven
         Whether the independent checker should prove the motion safe. If so, the trace is recorded.
     stall_s
-        Driving is given up if no event occurs for this time, in s, while robots wait for a path.
+        Driving stops early if no event occurs for this time, in s, while robots wait for a path.
     cost_table_bytes
         Memory, in bytes, for tables of unhindered travel times.
     each
-        Called with the traffic whenever simulated time has advanced; no advance goes beyond the
-        next event.
+        Function that is called with the `Traffic` object after each advance of simulated time. An
+        advance ends at the next event at the latest.
     """
     traffic = Traffic(
         layout, record_trace=proven, planner=planner, cost_table_bytes=cost_table_bytes

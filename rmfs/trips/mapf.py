@@ -1,8 +1,9 @@
 """Robots and trips from the files of path-finding benchmarks.
 
-`.scen` (MovingAI): each line is a robot with its start and its only goal. `.agents` and `.tasks`
-(League of Robot Runners): starts of robots, and goals or chains of goals. All goals of `.tasks`
-form one list in the order of the file; a robot that has reached its goal gets the next one.
+Each line of a `.scen` file (MovingAI) holds the start and the only goal of one robot. In the
+format of the League of Robot Runners, an `.agents` file holds the starts of the robots, and a
+`.tasks` file holds goals or chains of goals. All goals of a `.tasks` file form one list in the
+order of the file; a robot that has reached its goal gets the next goal in the list.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ if TYPE_CHECKING:
 def scenario(
     map_file: Path, scen: Path, robots: int | None = None
 ) -> tuple[Layout, Callable[[], TripStream]]:
-    """Read a map and the robots of a `.scen` file: the first `robots` or, by default, all.
+    """Read a map and the robots of a `.scen` file.
+
+    The first `robots` robots are read; by default, all.
 
     Returns
     -------
@@ -91,7 +94,7 @@ def league(
 
 
 def _numbered(path: Path) -> list[list[int]]:
-    """Read a list of cells, or of chains of cells, that begins with its length."""
+    """Read a file with a list of cells, or of chains of cells; its first line is their number."""
     try:
         rows = [[int(cell) for cell in line.replace(",", " ").split()] for line in _lines(path)]
         if not all(rows):

@@ -1,8 +1,8 @@
 """Streams of trips: sequences of commands for robots.
 
-The commands of a robot depend on the seed and on its number of finished trips, never on how long
-these took, so that different planners drive the same trips. Goals that all robots share are an
-exception: each goes to the first robot that needs one.
+The commands of a robot depend on the seed and on the number of trips that the robot has finished,
+but not on the durations of these trips. Different planners therefore drive the same trips. Goals
+that all robots share are an exception: each goes to the first robot that needs a goal.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.layout.model import Layout
 
 SERVICE_S = 5.0
-"""Mean service time of a pod in s; short, so that stations do not mask differences of planners."""
+"""Mean service time of a pod in s; short, so that differences between planners show."""
 
 
 class Command(NamedTuple):
@@ -51,7 +51,7 @@ class TripStream(Protocol):
         """Return the commands that follow an event of traffic."""
 
     def given(self, command: Command) -> Iterable[Command]:
-        """Return the commands that other robots can get as soon as `command` has been given."""
+        """Return commands for other robots that become possible once `command` has been given."""
 
 
 class PodTrips:
@@ -59,8 +59,8 @@ class PodTrips:
 
     Pods and free storage locations are divided among the robots, so that robots do not affect each
     other's choices. If the queue of a station has n places, including the station itself, at most
-    max(1, n - 1) robots are on their way to it or in it (condition W3 of `docs/safety.md` allows
-    n); further robots wait beneath their pods.
+    max(1, n - 1) robots are assigned to the station at a time, although condition W3 of
+    `docs/safety.md` allows n. Further robots wait beneath their pods.
 
     Parameters
     ----------
@@ -152,9 +152,9 @@ class PointTrips:
     Parameters
     ----------
     goals
-        For each robot, the waypoints to which it drives, in this order.
+        For each robot, the waypoints to which it drives, in order.
     shared
-        Goals for robots that have no goals of their own left, assigned in this order.
+        Goals for robots that have reached all their own goals, assigned in this order.
     """
 
     def __init__(self, goals: Sequence[Iterable[int]], shared: Iterable[int] = ()) -> None:
@@ -167,7 +167,7 @@ class PointTrips:
             yield from self._next(0, robot)
 
     def follow(self, time_us: int, kind: int, robot: int, _value: int) -> Iterator[Command]:
-        """Send a robot on after its arrival."""
+        """Send a robot to its next goal after its arrival."""
         if kind == EventKind.IDLE:
             yield from self._next(time_us, robot)
 
@@ -184,7 +184,7 @@ class PointTrips:
 
 
 def random_goals(goals: Sequence[int], seed: int, robot: int) -> Iterator[int]:
-    """Draw an endless sequence from two or more goals, never the same one twice in a row."""
+    """Draw an endless sequence from two or more goals, never the same goal twice in a row."""
     draw = generator(seed, Stream.TRIPS, robot)
     last = -1
     while True:
@@ -218,5 +218,5 @@ def random_trips(layout: Layout, seed: int, *, service_s: float = SERVICE_S) -> 
 
 
 def _dealt(things: Sequence[int], hands: int) -> list[list[int]]:
-    """Divide things among hands, one at a time."""
+    """Divide things among `hands` lists, in turn."""
     return [list(things[hand::hands]) for hand in range(hands)]

@@ -25,8 +25,8 @@ def replay_server(
     """Return a server that shows recorded runs, side by side if there are several.
 
     If `starter` is given, the page has a form that starts runs; if there are no recorded runs, the
-    page has only that form. The run folder is read again for each request, so that a reloaded page
-    shows its present content. If the run cannot be read, the answer states why.
+    page has only that form. A run folder is read again for each request, so that a reloaded page
+    shows the current content of the folder. If the run cannot be read, the answer states why.
 
     Raises
     ------

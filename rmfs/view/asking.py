@@ -1,4 +1,4 @@
-"""Requests of pages to a live run, with validation of their numbers and names."""
+"""Requests from pages to a live run, and validation of the numbers and names in them."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Known:
     events: int = 0
 
     def __post_init__(self) -> None:
-        """Refuse numbers that the run could not look up."""
+        """Refuse numbers that are out of range."""
         for name, rows in (("motion", self.motion), ("events", self.events)):
             if not 0 <= rows <= MOST_ROWS:
                 raise InputError(f"{name}: must be from 0 to {MOST_ROWS} rows")
@@ -45,7 +45,7 @@ class Known:
 
 @dataclass(eq=False)
 class Request:
-    """A task that the run's thread does for a page; if the task fails, the page gets the error."""
+    """A task that the run's thread does for a page; if it fails, the page gets the error."""
 
     done: threading.Event = field(default_factory=threading.Event)
     error: Exception | None = None
@@ -64,7 +64,7 @@ class Request:
 
 @contextmanager
 def concern_of(request: Request) -> Iterator[None]:
-    """Return a context for work on a page's request; leaving it marks the request as done.
+    """Return a context manager for work on a page's request, which is marked as done on exit.
 
     An error is passed to the page and does not stop the run.
     """
@@ -77,7 +77,7 @@ def concern_of(request: Request) -> Iterator[None]:
 
 @dataclass(eq=False)
 class News(Request):
-    """A request for new motion and events, with the data that the run's thread copied for it."""
+    """A request for new motion and events, and the data copied by the run's thread to answer it."""
 
     known: Known = field(default_factory=Known)
     motion: dict[str, NDArray[Any]] = field(default_factory=dict)
@@ -93,7 +93,7 @@ class Exchange(Request):
 
 
 def page_name(page: object) -> str:
-    """Return `page` if it can be the name of a page: a text of 1 to `LONGEST_NAME` characters.
+    """Return `page` if it can be the name of a page: a string of 1 to `LONGEST_NAME` characters.
 
     Raises
     ------

@@ -78,8 +78,8 @@ def watched(
     speed
         Initial speed in simulated seconds per wall second. Default: as fast as possible.
     await_page
-        Whether to wait for a page before the run begins, at most `PAGE_PATIENCE_S`. If a browser is
-        opened, the run waits for its page in any case.
+        Whether to wait up to `PAGE_PATIENCE_S` for a page before the run begins. If a browser is
+        opened, the run waits in any case.
 
     Raises
     ------

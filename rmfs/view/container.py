@@ -1,8 +1,8 @@
 """The binary container in which a scene is sent to the page: a JSON header and arrays.
 
-It consists of eight fixed bytes that identify the format, the length of the header (8 bytes,
-little-endian), the header, and the arrays. Each array starts at a multiple of eight bytes, so that
-the page can use it without copying.
+A container consists of eight fixed bytes that identify the format, the length of the header (8
+bytes, little-endian), the header, and the arrays. Each array starts at a multiple of eight bytes,
+so that the page can use it without copying.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ FORMAT = "rmfs-scene/1"
 MIME = "application/vnd.rmfs.scene"
 
 TYPES = {"|u1": "u1", "<i4": "i4", "<f4": "f4", "<f8": "f8"}
-"""Names of the supported element types in the header, by NumPy's name."""
+"""Names of the supported element types in the header, by their NumPy names."""
 
 
 def pack(header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes:

@@ -36,12 +36,12 @@ def names() -> dict[str, list[str]]:
 
 
 def shipped(part: str, name: str) -> str:
-    """Return `name` if it is that of a shipped file; a page may not name other files.
+    """Return `name` if a file of this name is shipped; pages cannot use other files.
 
     Raises
     ------
     InputError
-        If nothing of that name is shipped.
+        If no file of this name is shipped.
     """
     known = instances.names(PARTS[part])
     if name not in known:
@@ -60,7 +60,7 @@ def form(chosen: dict[str, str]) -> dict[str, Any]:
     Returns
     -------
     dict
-        `names` holds the possible choices, and `chosen` the present ones. `layout` and `scenario`
+        `names` holds the possible choices, and `chosen` the current ones. `layout` and `scenario`
         each hold the `schema` and the `values` of their parameters. `controllers` holds
         `problems`, the decision problems with all their controllers, and `values`, the chosen
         controller of each problem with its parameters.

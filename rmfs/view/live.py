@@ -1,6 +1,6 @@
-"""A live run, and the exchange of requests and data between its thread and those of pages.
+"""A live run, and the exchange of requests and data between its thread and the pages' threads.
 
-Only the run's own thread changes the simulation. Pages leave their requests here, and the run
+Only the run's own thread changes the simulation. Requests from pages are queued here, and the run
 processes them before it advances further. Data for a page are copied in the run's thread and packed
 in the page's thread.
 """
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from rmfs.simulation.kernel import Kernel
 
 ABSENT_S = 90.0
-"""Wall time, in s, without a request after which a page counts as gone. A hidden page may ask only
-once a minute."""
+"""Wall time without a request, in s, after which a page counts as gone. A hidden page may send
+requests only once a minute."""
 
 BETWEEN_NEWS_S = 0.15
 """Processor time, in s, that a run without a speed limit gets between two answers to pages."""
@@ -45,7 +45,7 @@ MOST_PAGES = 1000
 """Maximum number of pages that watch one run."""
 
 FIXED = frozenset({Problem.PP})
-"""Problems whose controllers cannot be exchanged, as they own the robots' plans."""
+"""Problems whose controllers cannot be exchanged, because the controllers own the robots' plans."""
 
 
 class LiveRun:
@@ -122,7 +122,7 @@ class LiveRun:
                 self._meeting.wait(1.0 if wait_s is None else min(wait_s, 1.0))
 
     def _attend(self, now_us: int) -> None:
-        """Answer the pages, and go on without them if they are gone."""
+        """Answer the pages, and remove pages that are gone."""
         for news in self._asked:
             self._answer(news, now_us)
         self._asked.clear()
@@ -131,7 +131,7 @@ class LiveRun:
             self._leave(page)
 
     def _exchange(self, now_us: int) -> int:
-        """Let the exchanges happen at this instant; returns it."""
+        """Schedule the requested exchanges of controllers for now, and return the current time."""
         assert self._simulation is not None
         for wish in self._exchanges:
             self._simulation.agenda.at(now_us, partial(self._install, wish))
@@ -140,7 +140,7 @@ class LiveRun:
         return now_us
 
     def _install(self, wish: Exchange) -> None:
-        """Exchange a controller; one that cannot be made here is the page's error."""
+        """Exchange a controller; if it does not fit the run, the page gets the error."""
         assert self._simulation is not None
         simulation, choice = self._simulation, wish.choice
         with concern_of(wish):
@@ -200,16 +200,16 @@ class LiveRun:
     def news(self, known: Known, page: str = "") -> bytes:
         """Return the packed motion and events that a page does not know yet.
 
-        A row of motion replaces all rows of the same robot that the page already has and that
-        start at the same time or later.
+        On the page, a new row of motion replaces all rows of the same robot that start at the same
+        time or later.
 
         Parameters
         ----------
         known
             How many rows of motion and how many events the page already has.
         page
-            Name of the page that asks. A page counts as gone once its last request is
-            more than `ABSENT_S` seconds old.
+            Name of the requesting page. A page counts as gone once its last request is more than
+            `ABSENT_S` seconds old.
 
         Raises
         ------
@@ -259,18 +259,18 @@ class LiveRun:
             self._disturb()
 
     def exchange(self, problem: str, table: Table) -> None:
-        """Install another controller for a decision problem at the present instant of the run.
+        """Install another controller for a decision problem at the current time of the run.
 
         Parameters
         ----------
         table
-            Table as in a controllers file: `name`, and parameters.
+            Name and parameters of the new controller, as in a controllers file.
 
         Raises
         ------
         InputError
-            If the controller of this problem cannot be exchanged, there is no controller of this
-            name, it names a file, it does not fit the run or the other controllers, or the run has
+            If the controller of this problem cannot be exchanged, `table` is invalid or names a
+            file, the new controller does not fit the run or the other controllers, or the run has
             ended.
         """
         if problem not in set(Problem) - FIXED:
@@ -290,14 +290,14 @@ class LiveRun:
         wish.wait()
 
     def leave(self, page: str) -> None:
-        """Record that a page was closed; after the last one, the run resumes its initial speed."""
+        """Record that a page was closed; if none is left, the run resumes at its initial speed."""
         with self._meeting:
             if page_name(page) in self._pages or len(self._left) < MOST_PAGES:
                 self._left.add(page)
                 self._leave(page)
 
     def close(self, reason: str) -> None:
-        """Answer pending requests; from now on, report that the run has ended, and why."""
+        """Mark the run as ended, answer pending requests, and report `reason` to all pages."""
         with self._meeting:
             if self._ended:
                 return
@@ -326,7 +326,7 @@ class LiveRun:
             time.sleep(0.05)
 
     def _is_here(self, page: str) -> bool:
-        """Take note that a page is there, and say so, unless it was closed."""
+        """Record that a page is open, and return True; if it has been closed, return False."""
         if page in self._left:
             return False
         if page not in self._pages and len(self._pages) >= MOST_PAGES:
@@ -335,7 +335,7 @@ class LiveRun:
         return True
 
     def _spare(self) -> None:
-        """Let the run have some time for itself: on a busy machine pages would ask too often."""
+        """Wait until a free run has had some processor time since the last answer to a page."""
         end_s = time.monotonic() + LONGEST_WAIT_S
         while self._pace.is_free and not self._ended and time.monotonic() < end_s:
             missing_s = self._answered_s + BETWEEN_NEWS_S - time.process_time()
@@ -350,14 +350,14 @@ class LiveRun:
         Raises
         ------
         InputError
-            If it never did.
+            If the run ended before it began.
         """
         self._meeting.wait_for(lambda: self._simulation is not None or self._ended)
         if self._simulation is None:
             raise InputError(self._ended)
 
     def _choices(self) -> dict[Problem, Choice]:
-        """Return the controllers installed, or about to be."""
+        """Return the controllers that are installed or about to be installed."""
         assert self._simulation is not None
         coming = {wish.choice.problem: wish.choice for wish in self._exchanges}
         return {**self._simulation.phase.choices, **coming}
@@ -367,12 +367,12 @@ class LiveRun:
         return 0 if self._simulation is None else self._simulation.now_us
 
     def _disturb(self) -> None:
-        """Make the run look here before it goes on."""
+        """Make the run process its requests before it advances further."""
         self._brake(on=True)
         self._meeting.notify_all()
 
     def _brake(self, *, on: bool) -> None:
-        """Be asked how far the run may go, or not any more: a free run has nothing to ask."""
+        """Set whether the run calls `limit_us`; a run that is free (see `Pace`) need not."""
         if self._simulation is None:
             return
         self._braking = on

@@ -116,7 +116,7 @@ class Pace:
         return max(missing_us / 1e6 / self.speed, 0.001)
 
     def _paid_us(self, now_us: int, wall_s: float, speed: float) -> int:
-        """Simulated time that wall time has paid for."""
+        """Return the simulated time, in us, that the run should have reached at its speed."""
         if self._since is None:
             self._since = (wall_s, now_us)
         since_s, since_us = self._since

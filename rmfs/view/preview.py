@@ -24,7 +24,7 @@ def preview(wish: Table) -> bytes:
     ----------
     wish
         `layout` is the name of a shipped layout. `set` contains values of parameters by key, such
-        as `{"layout.robots": 16}`; only those of the layout are used.
+        as `{"layout.robots": 16}`; only parameters of the layout are used.
 
     Raises
     ------

@@ -127,13 +127,13 @@ def head(
 
 
 def _told_names(names: Sequence[str]) -> list[str]:
-    """Names of SKUs, unless all of them are the numbers."""
+    """Return the names of the SKUs; an empty list if each name is only the SKU's number."""
     own = any(name != str(number) for number, name in enumerate(names))
     return list(names) if own else []
 
 
 def _of_visits(layout: Layout) -> dict[str, str]:
-    """Colours of robots on their way to stations of other kinds."""
+    """Return robot colours by task, for tasks at stations other than pick and replenishment."""
     return {kind.part("task", VisitTask).kind: kind.colour for kind in layout.other_kinds}
 
 

@@ -118,7 +118,11 @@ class Server(ThreadingHTTPServer):
         return f"rmfs-{self.server_port}"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in a thread of its own; refuse it if too many connections are open."""
+        """Serve a connection in a new thread.
+
+        If `MOST_CONNECTIONS` are open, the one that has been idle longest is closed in favour of
+        the new one. If none is idle, or twice as many are open, the new one is refused.
+        """
         with self._lock:
             crowded, full = self._open >= MOST_CONNECTIONS, self._open >= 2 * MOST_CONNECTIONS
             idle = min(self._reading, key=self._reading.__getitem__, default=None)
@@ -217,7 +221,7 @@ class _Handler(BaseHTTPRequestHandler):
         return handle(json.loads(body))
 
     def _admitted(self, token: str) -> Answer:
-        """Exchange a token in an address for a cookie, so that it stands in no address bar."""
+        """Replace the token in an address by a cookie, so that the address bar does not show it."""
         if not secrets.compare_digest(token.encode(), self.server.token.encode()):
             return _refusal(HTTPStatus.FORBIDDEN, "this token does not belong to the run")
         cookie = f"{self.server.cookie}={self.server.token}; HttpOnly; SameSite=Strict; Path=/"
@@ -235,7 +239,7 @@ class _Handler(BaseHTTPRequestHandler):
         return secrets.compare_digest(token.encode(), self.server.token.encode())
 
     def _answer(self, handle: Callable[[], Answer]) -> None:
-        """Answer a request: what is wrong with it is its own concern."""
+        """Answer a request; if it fails, the answer states the error."""
         try:
             answer = handle() if self._is_ours() else _NOT_OURS
         except InputError as error:
@@ -248,7 +252,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._send(answer)
 
     def _is_ours(self) -> bool:
-        """Whether the request names this server, and comes from its page if from any."""
+        """Whether the request names this server and does not come from a page of another server."""
         port = self.server.server_port
         hosts = {f"{HOST}:{port}", f"localhost:{port}"}
         origin = self.headers.get("Origin")
@@ -256,7 +260,7 @@ class _Handler(BaseHTTPRequestHandler):
         return self.headers.get("Host") in hosts and allowed
 
     def _is_from_here(self) -> bool:
-        """Whether no page elsewhere has asked for it; only browsers tell, and tell the truth."""
+        """Whether `Sec-Fetch-Site`, which only browsers send, names no other site."""
         return self.headers.get("Sec-Fetch-Site", "none") in ("none", "same-origin")
 
     def _send(self, answer: Answer) -> None:
@@ -276,21 +280,21 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(answer.body)
 
     def handle_one_request(self) -> None:
-        """Await a request, not for ever."""
+        """Await a request for a limited time, and handle it."""
         if self.asked_before:  # the first has been awaited since the connection was accepted
             self.server.reads(self.connection)
         self.asked_before = True
         super().handle_one_request()
 
     def handle(self) -> None:
-        """Serve one connection; a page that goes away is nothing to complain about."""
+        """Serve one connection; ignore the error if the page disconnects."""
         try:
             super().handle()
         except (ConnectionError, TimeoutError):
             self.close_connection = True
 
     def log_message(self, format: str, *args: object) -> None:
-        """Say nothing: the terminal belongs to the run."""
+        """Log nothing, since the terminal shows the output of the run."""
 
 
 def _refusal(status: HTTPStatus, message: str) -> Answer:

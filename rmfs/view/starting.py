@@ -1,4 +1,4 @@
-"""Starting runs from a form, each as a separate process with a page of its own."""
+"""Starting runs from a form, each as a separate process with its own page."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Starter:
         ------
         InputError
             If a value is invalid, too many runs are in progress, or the run ends before it has a
-            page; in the last case, the message is that of the run.
+            page; in the last case, the error has the message of the run.
         """
         arguments = _arguments(wish, self._results)
         with self._lock:
@@ -73,7 +73,7 @@ class Starter:
         return _address(run)
 
     def close(self) -> None:
-        """Stop unfinished runs and wait for their end; none leaves a half-written folder."""
+        """Stop unfinished runs and wait until they have ended; no half-written folders remain."""
         for run in self._running:
             if run.poll() is None:
                 run.terminate()  # as Ctrl-C: what is half-written goes
@@ -82,7 +82,7 @@ class Starter:
 
 
 def _arguments(wish: Table, results: Path) -> list[str]:
-    """Return the arguments of `rmfs run`; everything is checked as the command would check it."""
+    """Return the arguments of `rmfs run`, after the same checks as in the command itself."""
     given = {part: shipped(part, str(wish.get(part, "default"))) for part in PARTS}
     changes = wish.get("set", {})
     overrides = [(key.split("."), changed) for key, changed in changes.items()]
@@ -117,12 +117,12 @@ def _arguments(wish: Table, results: Path) -> list[str]:
 
 
 def _address(run: subprocess.Popen[str]) -> str:
-    """Return the first line a run prints: where its page is.
+    """Return the first line that a run prints: the address of its page.
 
     Raises
     ------
     InputError
-        If it prints none; with what it says instead.
+        If the run prints no address; the message is the last line of its error output.
     """
     assert run.stdout is not None
     assert run.stderr is not None

@@ -2,8 +2,8 @@
 
 The colours of stations (by kind) and of robots (by task or by delay) differ in hue and lightness:
 stations are darker than robots in the light theme and lighter in the dark theme, and delay has a
-scale of its own. A test ensures that people with common kinds of colour blindness can distinguish
-the colours, and that the colours contrast with the floor.
+separate colour scale. A test ensures that people with common kinds of colour blindness can
+distinguish the colours, and that the colours contrast with the floor.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Theme:
         Colour that is mixed into the colours of stations other than pick and replenishment
         stations, and the share of this colour in the mixture.
     stations, tasks
-        Colours of stations by kind, and of robots by task.
+        Colours of pick and replenishment stations, by kind, and of robots, by task.
     delay
         Colours of robots by delay, from none to long.
     """

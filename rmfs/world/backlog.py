@@ -138,7 +138,7 @@ class OrderBacklog:
         self._queued_at[self._row_of[order.index]] = order.queued_at
 
     def after(self, index: int) -> list[Order]:
-        """Return the orders with a greater index than the given one, latest first."""
+        """Return the orders whose index is greater than `index`, latest first."""
         newer = []
         for order in reversed(self.orders.values()):
             if order.index <= index:
@@ -174,9 +174,9 @@ class OrderBacklog:
 class BundleBacklog:
     """Bundles that are not assigned yet.
 
-    RPS chooses the pod of a bundle (the bundle is promised to the pod), and later releases all
-    bundles promised to that pod together. ROA chooses the station. Once a bundle has been released
-    and has a station, it is assigned.
+    RPS chooses the pod of each bundle: the bundle is then *promised* to the pod. Later, RPS
+    *releases* all bundles promised to a pod together. ROA chooses the station. A bundle is
+    *assigned* as soon as it has been released and has a station.
 
     Attributes
     ----------
@@ -188,7 +188,7 @@ class BundleBacklog:
     unreleased
         By pod, the bundles promised to it but not released.
     unreleased_since_s
-        By pod, the time in s at which the last of its unreleased bundles was promised; pods are
+        By pod, the time in s at which the latest of its unreleased bundles was promised; pods are
         sorted by this time.
     released
         By pod, the released bundles that have no station yet; pods whose bundles were released

@@ -22,9 +22,10 @@ class Levels(Protocol):
     """Interface to the traffic model, which computes the energy in each robot's battery."""
 
     def energy(self) -> dict[str, NDArray[Any]]:
-        """Return, by name, arrays of energies (J) and charging times (s), one value per robot.
+        """Return a dict of arrays of energies (J) and charging times (s), with one value per robot.
 
-        `level_j` is the energy in each battery.
+        The array `level_j` holds the energy in each battery, and `ever_used_j` the energy used by
+        each robot since time zero.
         """
         ...
 
@@ -52,8 +53,8 @@ class Batteries:
     capacity_j, least_j, reserve_j
         Capacity of a battery, minimum level and additional reserve, in J.
     enough_share
-        Level (share of capacity) from which the energy suffices for any task, with a margin; set
-        at the start of a run.
+        Level (share of capacity) that suffices for any task, with a margin; set at the start of a
+        run.
     stranded
         Robots whose level fell below the minimum and that have not been rescued since.
     strandings
@@ -71,7 +72,7 @@ class Batteries:
         self.strandings: list[tuple[float, int]] = []
 
     def usable_j(self, robot: int) -> float:
-        """Return the energy in a battery minus minimum level and reserve, in J; may be negative."""
+        """Return the energy in a battery above minimum level and reserve, in J; may be negative."""
         return self._levels.level_j(robot) - self.least_j - self.reserve_j
 
     def levels_j(self) -> NDArray[np.float64]:
@@ -89,7 +90,7 @@ class Batteries:
         return shares
 
     def mean_draw_w(self, now_s: float) -> float:
-        """Return the mean power drawn by a robot since time zero, in W; 0 at time zero."""
+        """Return the mean power drawn per robot since time zero, in W; 0 at time zero."""
         used_j = float(self._levels.energy()["ever_used_j"].mean())
         return used_j / now_s if now_s > 0 else 0.0
 
@@ -108,10 +109,10 @@ class Batteries:
         self.exchange(robot, max(self.given.rescue_share, self.share(robot)))
 
     def seconds(self, from_share: float, to_share: float, power_w: float) -> float:
-        """Return the charging time from one level to another, in s; inf if it takes forever.
+        """Return the time to charge from one level to another, in s; inf if this is impossible.
 
-        Levels are shares of the capacity. This is the inverse of `charged`, and follows
-        `Battery::charged` in rmfs/traffic/src/energy.rs.
+        Levels are shares of the capacity. This function is the inverse of `charged`, the Python
+        counterpart of `Battery::charged` in rmfs/traffic/src/energy.rs.
         """
         if to_share <= from_share:
             return 0.0

@@ -43,15 +43,15 @@ class ChargeTask(VisitTask):
 
 
 class RecoveryStation(Station[ChargeTask]):
-    """A charger or swap station; the keys of `tasks` are robots instead of pods."""
+    """A charger or swap station; its `tasks` are keyed by robot instead of by pod."""
 
     def verify(self, robots: Sequence[Robot]) -> None:
-        """Check that each task at this station is the present task of its robot.
+        """Check that each task at this station is the current task of its robot.
 
         Raises
         ------
         AssertionError
-            If a task is not.
+            If a task is not the current task of its robot.
         """
         for robot, task in self.tasks.items():
             if (task.robot, task.station, robots[robot].task) != (robot, self.index, task):

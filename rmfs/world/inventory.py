@@ -125,7 +125,7 @@ class Inventory:
         return skus
 
     def stock(self, pod: int, sku: int, units: int) -> None:
-        """Put units on a pod, in space that was not promised for them, as at time zero."""
+        """Put units on a pod without using promised space; for example, the initial stock."""
         space = units * self._unit_space_list[sku]
         before = self._contained.item(sku, pod)
         if not before and units:
@@ -183,9 +183,9 @@ class Inventory:
     def commit(self, sku: int, units: int) -> None:
         """Subtract units from `free_stock`; a negative number of units is added.
 
-        The units of an order are subtracted when the order is assigned to a station, except units
-        bound to a pod before, while the order is in a station's pool: these are subtracted when
-        they are bound.
+        The open units of an order are subtracted when the order is assigned to a station. Units
+        bound to a pod earlier, while the order is in a station's pool, are subtracted when they are
+        bound.
         """
         self._free_stock[sku] -= units
 
@@ -213,7 +213,7 @@ class Inventory:
             self._inbound[station, sku] += units
 
     def pick(self, pod: int, sku: int) -> None:
-        """Take one unit, which is bound to a request, from a pod."""
+        """Remove one unit, which is bound to a request, from a pod."""
         space = self._unit_space_list[sku]
         self._wanted[sku] -= 1
         left = self._contained.item(sku, pod) - 1

@@ -9,7 +9,7 @@ class News:
     """Tells its followers which things, such as stations, have changed; things are numbered from 0.
 
     A controller that is replaced during a run does not unsubscribe its follower, so the number of
-    followers is limited: the oldest are dropped. A dropped follower that asks for changes again is
+    followers is limited: the oldest are dropped. If a dropped follower calls `Follower.take`, it is
     subscribed again, and all things count as changed.
 
     Parameters
@@ -37,7 +37,7 @@ class News:
 
 
 class Follower:
-    """A subscriber to `News`: collects what has changed since it was last asked.
+    """A subscriber to `News`: collects the changes since the last call of `take`.
 
     Parameters
     ----------

@@ -103,8 +103,8 @@ class OrderOperations(WorldState):
         Raises
         ------
         ValueError
-            If the order is in the pool of another station, or needs a slot and the station is
-            inactive or has none free.
+            If the order is in the pool of another station; or if the order needs a slot, and the
+            station is inactive or has no free slot.
         """
         target = self.pick_stations[station]
         joins = order.index in target.orders
@@ -129,9 +129,9 @@ class OrderOperations(WorldState):
     def assign_lines(self, order: Order, station: int, skus: Collection[int]) -> Order:
         """Split an order of the backlog: assign its lines of the given SKUs to a pick station.
 
-        If a part of the order is at the station already, the lines join it. Otherwise they become a
-        new part, which takes a slot; but if they are all the lines that the order has left, the
-        order itself takes a slot.
+        If a part of the order is at the station already, the lines join that part. Otherwise, if
+        the order has no further lines in the backlog, the order itself takes a slot; if it has, the
+        lines become a new part, which takes a slot.
 
         Returns
         -------
@@ -141,8 +141,8 @@ class OrderOperations(WorldState):
         Raises
         ------
         ValueError
-            If the order has no line of these SKUs, is not in the backlog or is in a pool, or if a
-            slot is needed and the station is inactive or has none free.
+            If the order has no line of these SKUs, is not in the backlog, or is in a pool; or if a
+            slot is needed, and the station is inactive or has no free slot.
         """
         target = self.pick_stations[station]
         lines = tuple(line for line in order.lines if line.sku in skus)
@@ -176,7 +176,7 @@ class OrderOperations(WorldState):
         return part
 
     def _open(self, station: PickStation, lines: tuple[OrderLine, ...]) -> None:
-        """Count the lines that have come to a station; add their open requests to the station's."""
+        """Count lines as lines of a station, and add their open requests to the station's."""
         station.requests.add_lines(lines)
         for line in lines:
             self._lines[station.index, line.sku] += 1
@@ -200,7 +200,7 @@ class OrderOperations(WorldState):
         Raises
         ------
         ValueError
-            If not all its units have been picked.
+            If a unit of `order` has not been picked.
         """
         if order.unpicked_units:
             raise ValueError(f"order {order.index} lacks {order.unpicked_units} units")

@@ -19,7 +19,7 @@ class OrderLine:
     """Units of one SKU in one order.
 
     There is an extract request for each unit. A request is *open* until a unit on a certain pod is
-    bound to it, which happens when a robot gets the task to bring that pod, or later during the
+    bound to it. This happens when a robot gets the task of bringing that pod, or later during the
     task.
 
     Attributes
@@ -43,10 +43,10 @@ class OrderLine:
 class Order:
     """A pick order: in the backlog, then at one pick station until it is complete.
 
-    An order may be split: some of its lines then go to a station as a *part*, which is an order of
-    its own and takes a slot there, while the others stay in the backlog or form further parts. At
-    any time, a station has at most one part of the same order. The split order is complete when all
-    its parts and its own remaining lines are.
+    An order may be split: some of its lines then go to a station as a *part*, while the others stay
+    in the backlog or form further parts. A part is itself an `Order`, and takes a slot at its
+    station. At any time, a station has at most one part of the same order. The split order is
+    complete when all its parts and its remaining lines are complete.
 
     Attributes
     ----------

@@ -40,9 +40,9 @@ class Picker:
     index
         Number of the picker; pickers of the first shift come first.
     shift
-        Number of the shift.
+        Number of the picker's shift.
     home
-        Pick station during that shift.
+        Pick station at which the picker works during the shift.
     speed
         Relative speed; at 2, a unit takes half as long as at 1.
     station
@@ -72,7 +72,7 @@ class Picker:
 
 
 class Handled(NamedTuple):
-    """How a unit was picked.
+    """Record of how a unit was picked.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Handled(NamedTuple):
     fatigue
         Fatigue of the picker when the pick began, 0 to 1.
     error, noticed
-        Whether the unit was picked wrongly, and whether this error was corrected.
+        Whether the unit was picked wrongly, and whether this was noticed and corrected at once.
     face
         Face on which the unit lay; -1 if pods have no faces.
     turned
@@ -188,7 +188,7 @@ class Staff:
         return made
 
     def unit_s(self, station: int, now_s: float) -> float:
-        """Return the current mean time of a unit at a station, in s; infinite without a picker.
+        """Return the current mean time of a unit at a station, in s; inf if no picker is there.
 
         The effects of layers, faces and errors are left out.
         """
@@ -208,12 +208,12 @@ class Staff:
         return self.unit_times.least_s(station_s) * least_factor(self.given)
 
     def verify(self) -> None:
-        """Check that pickers and stations agree on who is where.
+        """Check that `at_station` agrees with the stations stored for the pickers.
 
         Raises
         ------
         AssertionError
-            If they do not.
+            If they differ.
         """
         told = {(one.index, one.station) for one in self.pickers if one.station >= 0}
         there = {(one.index, n) for n, one in enumerate(self.at_station) if one is not None}

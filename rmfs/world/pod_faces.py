@@ -41,8 +41,8 @@ class PodFaces(PodParts):
     def take(self, pod: int, sku: int, shown: int) -> int:
         """Take a unit of a SKU, and return the face from which it is taken.
 
-        It is taken from the face shown if that face has a unit of the SKU, otherwise from the face
-        with the most units of the SKU.
+        The unit comes from the face `shown` if this face has a unit of the SKU, and otherwise from
+        the face with the most units of the SKU.
 
         Parameters
         ----------

@@ -45,7 +45,8 @@ class PodLayers(PodParts):
     def take(self, pod: int, sku: int) -> int:
         """Take a unit of a SKU, and return the layer from which it is taken.
 
-        Of the layers that have such a unit, it is the one with the lowest time factor.
+        Among the layers with units of the SKU, this is the layer with the lowest factor on the time
+        per unit.
         """
         lying = self._units[pod, sku]
         layer = next(layer for layer in self._by_time if lying[layer])
@@ -64,7 +65,7 @@ class PodLayers(PodParts):
 
 
 def _classes(popularity: NDArray[np.float64], layers: int) -> NDArray[np.int64]:
-    """Divide SKUs by popularity into as many equal classes as there are layers; 0: most popular."""
+    """Divide the SKUs by popularity into one equal class per layer; class 0 is most popular."""
     rank = np.empty(len(popularity), np.int64)
     rank[np.argsort(-popularity, kind="stable")] = np.arange(len(popularity))
     return rank * layers // max(len(popularity), 1)

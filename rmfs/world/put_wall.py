@@ -1,9 +1,10 @@
 """The put wall: orders that have left the pick stations and are not packed yet.
 
-Every order, or part of one, leaves its pick station in a tote. Of the n totes of an order, the one
-that leaves last needs no slot of the wall: when all n have arrived, they are taken out together, so
-at most n - 1 occupy slots. A tote that needs a slot reserves one when it leaves its station, and
-waits there while none is free; only a tote carried by hand can find the wall full.
+Every order, or part of one, leaves its pick station in a tote. As soon as all n totes of an order
+have arrived at the wall, they are taken out together. The tote that leaves its station last
+therefore needs no slot, and an order occupies at most n - 1 slots. A tote that needs a slot waits
+at its station until one is free, and reserves this slot when it leaves. A tote that has waited too
+long is carried to the wall by hand, even if the wall is full.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ class Tote:
     Attributes
     ----------
     parcel
-        The parcel to which it belongs.
+        The parcel to which the tote belongs.
     station
-        The pick station.
+        The pick station that the tote has left.
     released_s
         Time in s at which the tote left the station.
     arrived_s
@@ -60,7 +61,7 @@ class Parcel:
     kept
         Number of slots of the wall that the order occupies or has reserved.
     consolidated_s
-        Time in s at which the last of its totes reached the wall.
+        Time in s at which the last tote of the order reached the wall.
     packing_s, packed_s
         Times in s at which packing of the order started and ended.
     """
@@ -89,10 +90,10 @@ class HeldTote:
     order
         The order or part; it still occupies its slot at the station.
     since_s
-        Time in s at which it was ready to leave.
+        Time in s at which the tote was ready to leave.
     timer
-        Serial number of the scheduled event by which it is carried to the wall by hand; -1 if there
-        is none.
+        Serial number of the scheduled event at which the tote will be carried to the wall by hand;
+        -1 if there is none.
     """
 
     order: Order
@@ -108,7 +109,7 @@ class PutWall:
     slots
         Number of slots; None: unlimited.
     slot_per_part
-        Whether each part of an order takes a slot; otherwise all its parts share a slot.
+        Whether each part of an order takes a slot; otherwise, all parts of an order share one slot.
 
     Attributes
     ----------
@@ -135,7 +136,7 @@ class PutWall:
         self.orders_packed = 0
 
     def has_room(self, order: int, *, last: bool) -> bool:
-        """Whether the next tote of an order would find room; a tote that needs no slot always does.
+        """Whether the wall has room for the next tote of an order; a tote without a slot needs none.
 
         Parameters
         ----------
@@ -169,7 +170,7 @@ class PutWall:
         return tote
 
     def pass_by(self, tote: Tote, now_s: float) -> Parcel:
-        """Record that an order of one tote is packed without using the wall; return its parcel."""
+        """Record that an order in one tote is packed without using the wall; return its parcel."""
         self.travelling -= 1
         tote.parcel.packing_s = now_s
         self.pack(tote.parcel, now_s)
@@ -205,7 +206,7 @@ class PutWall:
         return int(not last and (self.slot_per_part or order not in self.parcels))
 
     def verify(self) -> None:
-        """Check the counts by recounting.
+        """Check all counts against a recount.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Open requests, by SKU, of the orders at a pick station, or of those in its pool.
+"""Open requests, by SKU, of the orders at a pick station or of the orders in its pool.
 
 The pool of a station consists of orders of the backlog that are reserved for it.
 """
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class OpenRequests:
-    """Open requests of the orders at a pick station, or of those in its pool.
+    """Open requests of the orders at a pick station or of the orders in its pool.
 
     A request is open until it is bound to a pod.
 
@@ -35,8 +35,8 @@ class OpenRequests:
     Attributes
     ----------
     lines
-        By SKU, the lines with open units, in the sequence in which they were added, apart from
-        those that `reopen` put first.
+        By SKU, the lines with open units, in the sequence in which they were added; lines that
+        `reopen` added come first.
     units
         Open units in total.
     version
@@ -84,7 +84,7 @@ class OpenRequests:
         self._count_from(before)
 
     def reopen(self, line: OrderLine) -> None:
-        """Reopen one request of a line; if none of the line was open, put it first in `lines`."""
+        """Reopen one request of a line; put the line first in `lines` if it had none open."""
         if not line.open_units:
             self.lines.setdefault(line.sku, deque()).appendleft(line)
         line.open_units += 1

@@ -1,4 +1,4 @@
-"""State of the robots as far as tasks are concerned; `rmfs.traffic` simulates their motion."""
+"""The part of the robots' state on which tasks depend; `rmfs.traffic` simulates the motion."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Robot:
     tier
         Tier of `waypoint`.
     waypoint
-        Waypoint at which its current drive ends or, if it is not driving, at which it stands: the
-        waypoint of a station, a storage location, or its initial waypoint.
+        Waypoint at which its current drive ends or, if it is not driving, at which it stands. This
+        is the waypoint of a station, a storage location, or the robot's initial waypoint.
     pod
         The pod it carries, from the start of lifting to the end of setting down; or -1.
     task
@@ -28,7 +28,7 @@ class Robot:
     station
         The station where it stands at the head of the queue; -1 if there is none.
     places
-        Storage locations reserved for it, where it stands or is going to stand.
+        Storage locations that are reserved for it because it stands or will stand there.
     prepared
         Tasks that are to follow its current one. Nothing is reserved for them: a task that is no
         longer possible when it is due is dropped.
@@ -45,6 +45,6 @@ class Robot:
 
     @property
     def is_free(self) -> bool:
-        """Whether it carries nothing and has no task other than resting."""
+        """Whether the robot carries nothing and has no task other than resting."""
         task = self.task
         return self.pod < 0 and (task is None or task.rests)

@@ -48,13 +48,14 @@ class WorldState:
         Notifications of changed pick stations. A pick station counts as changed when it is switched
         on or off, when a robot reaches or leaves it, and when it gains or loses an order.
     work_news
-        Notifications of stations that gain open work (for which no pod is under way) or may have
-        none left, by number in the common numbering (pick stations first).
+        Notifications of stations that gain open work or may have no open work left, by number in
+        the common numbering. Open work is work for which no pod is under way.
     work_stations
-        All pick and replenishment stations, to which rules assign work, in the common numbering.
+        The stations to which rules assign work: all pick and replenishment stations, in the common
+        numbering (see `stations`).
     stations
-        All stations in the common numbering; those that are neither pick nor replenishment
-        stations come last.
+        All stations in the common numbering: pick stations, then replenishment stations, then the
+        others.
     need
         Open units (not yet bound to a pod) of the orders at each of the S pick stations, per SKU,
         shape (S, K).
@@ -77,7 +78,7 @@ class WorldState:
     units_initial
         Units on the pods at time zero.
     unstored_space
-        Space units of all bundles created and not yet stored.
+        Space of all bundles created and not yet stored, in space units.
     incoming
         Units of all bundles created and not yet stored, per SKU, shape (K,).
     order_redraws
@@ -170,5 +171,5 @@ class WorldState:
 
     @property
     def load(self) -> float:
-        """Space units of the stock on pods and of all bundles that are not stored yet."""
+        """Space of the stock on pods and of all bundles not yet stored, in space units."""
         return self.inventory.stored_space + self.unstored_space

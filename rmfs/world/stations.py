@@ -25,18 +25,18 @@ T = TypeVar("T", bound="Task")
 
 
 class Station(Generic[T]):
-    """Common state of stations of all kinds; each kind adds its own.
+    """State that stations of all kinds have; each kind adds further state.
 
     Attributes
     ----------
     index
-        Number in the common numbering: pick stations come first.
+        Number in the common numbering: pick stations, then replenishment stations, then others.
     number
         Number among the stations of its kind.
     waypoint, tier
         Waypoint and tier at which robots are served.
     visits
-        How often a robot has reached the head of the queue so far.
+        Number of times that a robot has reached the head of the queue so far.
     tasks
         By pod, the unfinished tasks of bringing a pod to this station, oldest first.
     """
@@ -89,17 +89,17 @@ class Station(Generic[T]):
 
     @property
     def has_work(self) -> bool:
-        """Whether it has unfinished work; by default, whether it has tasks."""
+        """Whether the station has unfinished work; by default, whether it has tasks."""
         return bool(self.tasks)
 
     @property
     def has_open_work(self) -> bool:
-        """Whether it has work for which no pod is under way; by default False."""
+        """Whether the station has work for which no pod is under way; by default False."""
         return False
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Version of its work, which changes when work is added; by default constant."""
+        """Version of the station's work, which changes when work is added; by default constant."""
         return ()
 
 
@@ -150,12 +150,12 @@ class PickStation(Station[PickTask]):
 
     @property
     def has_work(self) -> bool:
-        """Whether an order is open here."""
+        """Whether the station has open orders."""
         return bool(self.orders)
 
     @property
     def has_open_work(self) -> bool:
-        """Whether there are requests, of its orders or its pool, for which no pod is under way."""
+        """Whether the station's open orders or its pool have open requests."""
         return self.requests.units > 0 or self.queued_requests.units > 0
 
     @property
@@ -174,13 +174,13 @@ class ReplenishmentStation(Station[ReplenishTask]):
     capacity
         Maximum of `used`, in space units.
     used
-        Space units of the bundles for which ROA has reserved space here and whose transfer has not
-        started.
+        Space of the bundles for which ROA has reserved space here and whose transfer has not
+        started, in space units.
     bundles
         Number of the bundles counted in `used`.
     waiting
-        For each pod, the assigned bundles not yet part of a task. The pod that has been waited for
-        the longest comes first.
+        By pod, the assigned bundles not yet part of a task. The pod whose first bundle has waited
+        longest comes first.
     version
         Increases whenever a bundle is added to `waiting`.
     """
@@ -205,7 +205,7 @@ class ReplenishmentStation(Station[ReplenishTask]):
 
     @property
     def free_space(self) -> float:
-        """Space units available for further bundles."""
+        """Space available for further bundles, in space units."""
         return self.capacity - self.used
 
     @property

@@ -1,8 +1,9 @@
 """Storage locations (*places* for short), the pods stored at them, and the robots that keep them.
 
-A place is reserved for a robot that is to stand there, and the robot *keeps* it until the robot has
-a plan to leave; meanwhile no other robot may be sent there (condition W2 of `docs/safety.md`). An
-empty robot may keep a place beneath a stored pod; only a loaded robot needs a place without a pod.
+When a robot is sent to a place, the place is reserved for it. The robot *keeps* the place until it
+has a plan to leave; until then, no other robot may be sent there (condition W2 of
+`docs/safety.md`). An empty robot may keep a place beneath a stored pod; only a loaded robot needs a
+place without a pod.
 """
 
 from __future__ import annotations
@@ -98,7 +99,7 @@ class Storage:
         Raises
         ------
         ValueError
-            If another robot has claimed it.
+            If another robot has claimed the pod.
         """
         if self.claimed_by[pod] not in (-1, robot):
             raise ValueError(f"pod {pod} is claimed by robot {self.claimed_by[pod]}")
@@ -113,7 +114,7 @@ class Storage:
             self._refresh(self.place_of[pod])
 
     def keep(self, robot: Robot, place: int) -> None:
-        """Reserve a place for a robot that is to stand there; ignore waypoints that are no places.
+        """Reserve a place for a robot; do nothing if the waypoint is not a storage location.
 
         Raises
         ------
@@ -130,14 +131,16 @@ class Storage:
         self._refresh(place)
 
     def departed(self, robot: Robot, rest: int) -> bool:
-        """Release the places that a robot leaves or has left; return whether there were any.
+        """Release the places that a robot leaves or has left; return whether any were released.
+
+        The robot keeps the place `rest`, the place of its task, and the place to which it has been
+        sent, even if no route to that place is planned yet.
 
         Parameters
         ----------
         rest
-            Waypoint at which the robot's current plan ends; without a plan, where it stands. The
-            robot keeps it, the place of its task, and the place to which it has been sent, even if
-            no route to that place is planned yet.
+            Waypoint at which the robot's current plan ends or, without a plan, at which the robot
+            stands.
         """
         goal = robot.task.place if robot.task is not None else -1
         left = [place for place in robot.places if place not in (robot.waypoint, rest, goal)]
@@ -162,7 +165,7 @@ class Storage:
         Raises
         ------
         ValueError
-            If a pod is stored there already.
+            If a pod is already stored at the place.
         """
         if self.pod_at[place] >= 0:
             raise ValueError(f"pod {self.pod_at[place]} is already stored at {place}")
@@ -179,7 +182,7 @@ class Storage:
             self._refresh(place)
 
     def _refresh(self, place: int) -> None:
-        """Derive the three masks at a place from pod, claim and keeper."""
+        """Update `is_empty`, `is_restful` and `is_at_hand` for a place."""
         index = self.place_index[place]
         pod = self.pod_at[place]
         keeper = self.kept_by[place]

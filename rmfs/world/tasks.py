@@ -1,8 +1,8 @@
 """Tasks of robots: one class for each kind of task.
 
 Every task takes a robot, with or without a pod, to a station or to a storage location (*place*); a
-robot may also rest at another waypoint. A kind defines when a task is possible, what the world
-reserves when the task starts, and what the world releases when it ends.
+robot may also rest at another waypoint. A kind of task defines when a task is possible, what the
+world reserves when the task starts, and what the world releases when the task ends.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Task:
     Attributes
     ----------
     kind
-        Name of the kind in tables, traces and the viewer.
+        Name of this kind of task in tables, traces and the viewer.
     rests
         Whether a robot with this task may get another task at any time.
     robot
@@ -87,8 +87,8 @@ class Task:
     station
         The station to which the robot goes; -1 for none.
     place
-        The waypoint at which the pod is to be stored or the robot is to rest; -1 for none, and
-        while it is still to be chosen.
+        The waypoint at which the pod is to be stored or the robot is to rest; -1 for none, or if it
+        has not been chosen yet.
     """
 
     kind: ClassVar[str]
@@ -129,14 +129,14 @@ class Task:
 
 @dataclass(slots=True, eq=False)
 class StationTask(Task):
-    """The task of bringing an available pod, or the one already carried, to a station."""
+    """The task of bringing an available pod, or the pod already carried, to a station."""
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the pod is available or already carried, and there is work for it."""
+        """Whether the pod is available or already carried, and the station has work for it."""
         return _can_have(world, self) and serves(self.pod, self.station)
 
     def ended(self, world: Keeps) -> None:
-        """Deregister from the station."""
+        """Remove the task from the tasks of its station."""
         del world.stations[self.station].tasks[self.pod]
 
 
@@ -154,17 +154,20 @@ class PickTask(StationTask):
     picks: deque[Pick] = field(default_factory=deque)
 
     def started(self, world: Keeps) -> Task:
-        """Claim the pod; bind to it all open requests of the station's orders that it can serve."""
+        """Claim the pod, and bind to it open requests of the station's orders.
+
+        As many requests are bound as the pod's available stock can serve.
+        """
         return world.start_pick(world.robots[self.robot], self.pod, self.station)
 
     def ended(self, world: Keeps) -> None:
-        """Deregister from the station; stop counting the pod's stock as inbound."""
+        """Remove the task from its station's tasks; stop counting the pod's stock as inbound."""
         StationTask.ended(self, world)
         world.inventory.end_inbound(self.pod)
 
     @property
     def can_pick(self) -> bool:
-        """Whether any pick is for an order with a slot at the station, not for one in its pool."""
+        """Whether at least one of the units is for an order that has a slot at the station."""
         return any(pick.line.order.station >= 0 for pick in self.picks)
 
 

@@ -121,7 +121,7 @@ def _open(
 
 
 def _demand(world: World) -> None:
-    """Stock that is still uncommitted, and stock free for orders of the backlog."""
+    """Uncommitted stock, stock free for the backlog, and units wanted agree with the orders."""
     inventory = world.inventory
     free = inventory.available.sum(axis=1, dtype=np.int64) - world.need.sum(axis=0)
     _check(np.array_equal(inventory.free_stock, free), "stock free for the backlog")

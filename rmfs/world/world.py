@@ -1,4 +1,4 @@
-"""The world: a warehouse and the operations that change it; each keeps all counts consistent."""
+"""The world: a warehouse, and operations that change it while all counts stay consistent."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class World(OrderOperations):
         self.units_initial += sum(units)
 
     def add_bundle(self, bundle: Bundle) -> None:
-        """Add a bundle to the backlog of bundles, which are not yet assigned to a station."""
+        """Add a bundle that has arrived to the backlog of bundles."""
         self.bundles.add(bundle)
         self.bundles_created += 1
         self.unstored_space += bundle.space
@@ -51,9 +51,9 @@ class World(OrderOperations):
         self.bundles.promised(bundle, self.now_s)
 
     def release_bundles(self, pod: int) -> list[Bundle]:
-        """Release the bundles promised to a pod; return those that are thereby assigned.
+        """Release the bundles promised to a pod; return those that are now assigned.
 
-        Bundles for which ROA has already chosen a station are assigned to it.
+        These are the bundles for which ROA has already chosen a station.
         """
         bundles = self.bundles.release(pod)
         for bundle in bundles:
@@ -108,7 +108,7 @@ class World(OrderOperations):
         return task
 
     def extend_pick(self, task: PickTask, sku: int, late_bound: bool = True) -> int:
-        """Bind open requests for a SKU to the pod of a task; return their number."""
+        """Bind open requests for a SKU to the pod of a task; return how many were bound."""
         at_most = self.inventory.available.item(sku, task.pod)
         lines = self.pick_stations[task.station].requests.take(sku, at_most)
         if lines:
@@ -119,10 +119,10 @@ class World(OrderOperations):
     def extend_queued(
         self, task: PickTask, order: Order, *, whole: bool, late_bound: bool = True
     ) -> int:
-        """Bind open requests of an order to the pod of a task; return how many.
+        """Bind open requests of an order to the pod of a task; return how many were bound.
 
-        The order is in the pool of the task's station. Nothing is bound if the pod is already at
-        the head of the station's queue.
+        The order must be in the pool of the task's station. Nothing is bound if the pod is already
+        at the head of the station's queue.
 
         Parameters
         ----------
@@ -148,7 +148,7 @@ class World(OrderOperations):
         return bound
 
     def give_back(self, task: PickTask) -> int:
-        """Reopen those requests of a task whose orders have no slot yet; return how many."""
+        """Reopen the requests of a task whose orders have no slot yet; return their number."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)
@@ -166,7 +166,7 @@ class World(OrderOperations):
         return task
 
     def extend_replenish(self, task: ReplenishTask) -> int:
-        """Add to a task the bundles that wait at its station for its pod; return their number."""
+        """Extend a task by bundles that wait for its pod at its station; return their number."""
         bundles = self._replenishment_station(task.station).take(task.pod)
         task.bundles.extend(bundles)
         return len(bundles)
@@ -212,7 +212,7 @@ class World(OrderOperations):
         return task
 
     def end_task(self, robot: Robot) -> None:
-        """End the task of a robot; if it carries a pod, the pod stays claimed by the robot."""
+        """End the task of a robot; a pod that the robot carries stays claimed by it."""
         if robot.task is not None:
             robot.task.ended(self)
         self._set_task(robot, None)

@@ -27,10 +27,10 @@ class Buffer:
         self._wanted = False
 
     def is_over(self, wanted: bool = True) -> bool:
-        """Return whether to ask now: there is something to ask, and the buffer time is over.
+        """Return whether to ask the optimiser now: if `wanted` is true and the buffer time is over.
 
-        If there is something to ask but the buffer time is not over, `next_event_s` is then the end
-        of the buffer time.
+        If `wanted` is true but the buffer time is not over, the call also sets `next_event_s` to
+        the end of the buffer time.
 
         Parameters
         ----------

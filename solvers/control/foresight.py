@@ -22,14 +22,14 @@ _PRIOR_H = 0.1
 class Foresight:
     """Forecasts the visits of pods to pick stations; a forecast is kept for `kept_s` seconds.
 
-    The units needed within the horizon are those ordered and not yet picked, and those of new
-    orders. The pods are expected to supply them in proportion to their stock, `pile_on` units per
-    visit. New orders are expected to ask for as many units per hour as have been picked per hour so
-    far, distributed over SKUs in proportion to the units ordered so far.
+    The units needed within the horizon are those already ordered but not yet picked, and those of
+    the new orders expected. Pods are expected to supply these units in proportion to their stock,
+    `pile_on` units per visit. New orders are expected to need as many units per hour as have been
+    picked per hour so far, distributed over SKUs in proportion to the units ordered so far.
 
-    To stabilise the estimates at the beginning, fictitious observations are added: to the units
-    picked per hour, six minutes in which all pick stations pick without a pause; to the units
-    picked per visit, twenty visits of two units each.
+    To stabilise the estimates at the beginning of a run, fictitious observations are included: six
+    minutes in which all pick stations pick without a pause (for the units picked per hour), and
+    twenty visits of two units each (for the units picked per visit).
 
     Parameters
     ----------

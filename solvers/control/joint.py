@@ -31,8 +31,8 @@ class JointAllocation(TaskAllocation[P]):
 
     Other decisions are made by rules: for replenishment, a robot brings a pod chosen by PPS
     lexicographic to the nearest replenishment station with work; idle robots rest where the rest
-    rule `rest` sends them. Answers are stored in a plan, which is carried out without other
-    controllers.
+    rule `rest` sends them. Answers are stored in a plan, which this controller carries out without
+    consulting other controllers.
     """
 
     goes_on = True
@@ -53,7 +53,7 @@ class JointAllocation(TaskAllocation[P]):
         return isinstance(decision, AssignOrder | AssignLines)
 
     def _free_robots(self) -> list[Robot]:
-        """Return robots without pod and task, in order."""
+        """Return the robots that rest, or that need a task and carry no pod, in order of index."""
         asking, resting = self.view.asking, self.view.resting
         return [
             robot
@@ -97,11 +97,11 @@ class JointAllocation(TaskAllocation[P]):
     # --- for the consult ------------------------------------------------------------------------
 
     def serves(self, pod: int, station: int) -> bool:
-        """Whether there is work for a pod at a pick or replenishment station."""
+        """Whether a pick or replenishment station has work for a pod."""
         return self._heuristic.serves(pod, station)
 
     def pick_pod(self, robot: Robot, station: PickStation) -> int:
-        """Return -1 (no pod), as this controller itself assigns the tasks for picks."""
+        """Return -1 (no pod), because the plan of this controller contains the tasks for picks."""
         return -1
 
     def replenishment_pod(self, robot: Robot, station: ReplenishmentStation) -> int:

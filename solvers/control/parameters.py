@@ -11,7 +11,7 @@ from rmfs.solvers.models.solution import Limits
 
 
 class BufferParameters(Parameters):
-    """How often the optimiser is asked."""
+    """Parameter that limits how often the optimiser is asked."""
 
     buffer_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
     """Minimum seconds between two questions, so that one question covers several decisions."""

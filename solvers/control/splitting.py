@@ -2,13 +2,13 @@
 
 A split order needs slots of the wall: one for each of its totes except the last or, if the totes of
 an order share a slot, just one. The number of totes is known only when the last line has a station,
-so each line without a station counts as a separate tote. Orders that are split within the capacity
-of the wall therefore never find it full, and no pick station is blocked because of the wall.
+so each line without a station counts as a separate tote. If no other limit is given, the wall
+therefore always has room for the totes of split orders, and never blocks a pick station.
 
-If not all orders can be split, each is ranked by the number of its lines that pods under way to one
-station can serve, divided by the number of slots of the wall that the order needs. An order that
-these pods can serve completely need not be split, and an order of which they can serve no line
-would not benefit from being split now.
+If the number of split orders is limited, each order is ranked by the number of its lines that pods
+under way to one station can serve, divided by the number of slots of the wall that the order needs.
+An order is left out if these pods can serve it completely, as it need not be split, or if they can
+serve none of its lines, as it would not benefit from being split now.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Splitting:
     planned
         Orders of the backlog with lines planned for stations.
     pays
-        Function that returns whether it is worth its cost to split an order; None: it always is.
+        Function that returns whether splitting an order is worth its cost; None: it always is.
     """
 
     def __init__(
@@ -76,9 +76,9 @@ class Splitting:
         return self._is_settled(order) or (self._orders >= 1 and self._slots >= self._need(order))
 
     def offers(self) -> Callable[[Order], bool]:
-        """Choose the orders that may be split now; return a test of whether an order is among them.
+        """Choose the orders that may be split now; return a function that tests for these orders.
 
-        Orders that are already split, or have a single line, always pass.
+        The test is also true for orders that are already split, or have a single line.
         """
         if self._orders == self._slots == inf:
             return lambda order: self._is_settled(order) or self._is_worth_it(order)
@@ -99,9 +99,9 @@ class Splitting:
         return self._pays is None or self._pays(order)
 
     def _candidates(self) -> list[Order]:
-        """Return orders of which pods under way serve some lines, but not all at one station.
+        """Return orders of which pods under way to one station can serve some lines, but not all.
 
-        The best come first: most lines at one station per slot of the wall, then the oldest.
+        Orders with the most such lines per slot of the wall come first; ties go to the oldest.
         """
         view = self._view
         spare = view.inventory.inbound[: len(view.pick_stations)] - view.need

@@ -45,13 +45,13 @@ _SCORED_PER_S = 1e6
 
 @dataclass(frozen=True)
 class Question:
-    """A storage problem of bundles, pods and stations, and how to solve it.
+    """The problem of storing bundles in pods at replenishment stations, and how to solve it.
 
     Attributes
     ----------
     method
-        `greedy` (the greedy rule), `cp_sat` or `highs` (both start from its solution), or
-        `rounding`.
+        `greedy` (the greedy rule), `rounding`, or `cp_sat` or `highs`, which both start from the
+        solution of the greedy rule.
     """
 
     data: Replenishment
@@ -101,8 +101,8 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
     the pod holds few units of it, and higher if SKUs of the pod are often ordered together with the
     bundle's SKU. The value is weighed against the pod's trip to a station with room for the bundle;
     the trip counts once for all bundles of the pod, and is free if the pod is brought to that
-    station anyway. The optimiser is asked when bundles wait and a station has room, at most
-    once per `buffer_s`; if it fails, the greedy rule decides.
+    station anyway. When bundles wait and a station has room, the optimiser is asked, at most once
+    in `buffer_s` seconds. If it fails, the greedy rule decides.
     """
 
     parameters_model = StockingParameters
@@ -130,7 +130,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
             yield self._question()
 
     def answered(self, call: Call) -> Iterator[Told]:
-        """Apply the valid decisions pod by pod; without a solution, those of the greedy rule."""
+        """Apply the valid decisions of the solution or, if there is none, of the greedy rule."""
         if call.solution is not None:
             yield from self._apply(call.solution, call.ask.memo, call)
             return
@@ -210,7 +210,10 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
         )
 
     def _affinity(self, skus: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return how often lines of each SKU occur with a line of these, shape (K, K); else 0."""
+        """Return the number of orders with both SKUs per unit ordered of the first, shape (K, K).
+
+        Only rows of the given SKUs are computed; all others are 0.
+        """
         count = len(self.view.skus)
         affinity = np.zeros((count, count))
         units = self._frequency.units

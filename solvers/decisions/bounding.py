@@ -1,4 +1,4 @@
-"""Proven bounds on the objective of a question, by several methods; the best bound counts."""
+"""Proven bounds on the objective of a question, by several methods."""
 
 from __future__ import annotations
 
@@ -49,7 +49,8 @@ def bounds(
     work
         Limit of the exact search, in the unit in which its method counts work.
     where
-        What error messages call the question, such as the path of its file. Default: its name.
+        Name of the question in error messages, such as the path of its file. Default:
+        `decision.name`.
     guard_s
         Wall time after which the relaxation, or the search, is given up, in s. Default: none.
     search
@@ -88,7 +89,7 @@ def best(
 ) -> tuple[str, float]:
     """Return the name of the method with the best bound, and this bound.
 
-    Without any bound, these are "" and nan.
+    If no method finds a bound, these are "" and nan.
 
     Parameters
     ----------

@@ -149,7 +149,7 @@ def _encoded(field: Field, value: Any, *, sparse: bool) -> Any:
 
 
 def _same(array: NDArray[Any], value: Any) -> NDArray[np.bool_]:
-    """Which entries are a value, its sign included where it is 0."""
+    """Return which entries equal a value; zeros must also have the same sign."""
     same: NDArray[np.bool_] = array == value
     if array.dtype.kind == "f":
         same &= np.signbit(array) == np.signbit(value)
@@ -163,7 +163,7 @@ def _most_frequent(array: NDArray[Any]) -> tuple[Any, int]:
 
 
 def _listed(array: NDArray[Any]) -> Any:
-    """As nested lists, with infinity as text: JSON has none."""
+    """Return nested lists, with infinity as text, because JSON has no infinity."""
     if array.dtype.kind == "f" and np.isinf(array).any():
         texts = array.astype(object)
         texts[np.isposinf(array)] = "inf"
@@ -189,7 +189,7 @@ def _decoded(field: Field, raw: Any) -> Any:
 
 
 def _filled(field: Field, raw: dict[str, Any], dimensions: int) -> NDArray[Any]:
-    """Read an array that is written by its exceptions."""
+    """Read an array that is written in the short form."""
     if raw.keys() != {"shape", "all", "at", "values"}:
         raise _WrongError("must be lists, or an object with shape, all, at and values")
     shape, at = raw["shape"], raw["at"]
@@ -262,7 +262,7 @@ def _flatten(raw: Any, dimensions: int, into: list[Any]) -> tuple[int, ...]:
 def _check_shapes(
     where: str, schema: Schema, part: str, plain: Plain, known: dict[str, int]
 ) -> None:
-    """Let a letter stand for one size throughout."""
+    """Check that each letter in the shapes stands for the same size throughout."""
     fields: tuple[Field, ...] = getattr(schema, part)
     if part == "data":
         known |= {letter: count(plain) for letter, count in schema.derived.items()}

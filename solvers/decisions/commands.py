@@ -180,7 +180,7 @@ def profile(
     ] = 1,
     out: Annotated[Path, typer.Option(help="Table (CSV).")] = Path("results/profile.csv"),
 ) -> None:
-    """Run methods, doubling the limit of work each time, and write values, gaps and times."""
+    """Run methods with repeatedly doubled limits of work, and write values, gaps and times."""
     import pandas as pd
 
     from rmfs.files import write_text

@@ -65,8 +65,9 @@ class Decision:
     provenance
         Where the question comes from: run, simulated time, decision problem, controller.
     asked
-        How a controller asked the question: the name of the controller's module in `asking`
-        (`by`), and the settings passed along with the data. Empty if no shipped controller asked.
+        How a controller asked the question: the name of the controller (`by`, as in
+        `asking.ASKERS`), and the settings passed along with the data. Empty if no shipped
+        controller asked.
     recorded
         The answer given in the run, if there was one.
     """
@@ -79,7 +80,7 @@ class Decision:
 
     @property
     def schema(self) -> Schema:
-        """Definition of its fields."""
+        """Definition of the question's fields."""
         return SCHEMAS[self.family]
 
     @property
@@ -89,12 +90,12 @@ class Decision:
 
     @property
     def name(self) -> str:
-        """Name of its file, without the suffix."""
+        """Name of the question's file, without the suffix."""
         return f"{self.family}-{self.hash[:NAMED_BY]}"
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Sizes of its dimensions, by letter of the schema."""
+        """Sizes of the question's dimensions, by the letters that name them in the schema."""
         return sizes_of(self.family, self.data)
 
     @property
@@ -204,7 +205,7 @@ def _told(schema: Schema, found: Found) -> dict[str, Any]:
 
 
 def _number(value: float) -> float | None:
-    """JSON has neither infinity nor nan; both say that there is none."""
+    """Return a number for JSON; None for infinity and nan, which JSON does not have."""
     return value if math.isfinite(value) else None
 
 

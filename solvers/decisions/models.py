@@ -118,7 +118,7 @@ def model_values(decision: Decision, values: Plain) -> Any:
 
 
 def _flags(part: dict[str, Any]) -> dict[str, Any]:
-    """Turn 0 and 1 into what the parts of models call truth."""
+    """Convert flags, which are 0 or 1 in a question, to truth values."""
     truth = ("prospects", "join_visits")
     return {name: bool(value) if name in truth else value for name, value in part.items()}
 

@@ -3,11 +3,11 @@
 Methods are deterministic, so the best answer after work W is the answer of a run with the limit W.
 A profile therefore consists of separately timed runs, each with twice the limit of the one before.
 
-The primal gap of a value v against the best known one b is 0 if both are 0, 1 if their signs
+The primal gap of a value v against the best known value b is 0 if both are 0, 1 if their signs
 differ, and ``|v - b| / max(|v|, |b|)`` otherwise; it is 1 while there is no value (Berthold 2013,
 Measuring the impact of primal heuristics). The primal integral is the mean of the gap over time,
 from 0 to the end of the longest run of any method, or over work, from 0 to the method's largest
-limit: 0 is perfect, 1 means that nothing was found.
+limit. A primal integral of 0 is perfect; 1 means that nothing was found.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def points(
 
 
 def primal_gap(value: float, best: float) -> float:
-    """Return the primal gap of a value; 1 if the value or the best known one is nan.
+    """Return the primal gap of a value; 1 if the value or the best known value is nan.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ def primal_integral(steps: Iterable[tuple[float, float]], end: float) -> float:
     ----------
     steps
         Pairs of a time (or amount of work) and the primal gap of the answer found by then, in any
-        order. Before the first, the gap is 1.
+        order. Before the first answer, the gap is 1.
     end
         End of the integral; positive.
     """

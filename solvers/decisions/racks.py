@@ -7,8 +7,8 @@ A file states its sizes (`N` products, `R` racks, `O` orders, `RS` shelves of a 
 
 The format is described by the authors
 (homepages.dcc.ufmg.br/~arbex/mobileRacks/rackInstancesDescription.txt); their files are not
-included here. The number of pickers and the number of orders per picker are not in the file; the
-caller states both.
+included here. The number of pickers and the number of orders per picker are not in the file, and
+must be given separately.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def read_racks(path: Path, pickers: int, orders_each: int) -> Decision:
 
 
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield the words of each line that has any; what follows # is a comment."""
+    """Yield the number and the words of each line that has words, without comments (after #)."""
     try:
         text = read_bounded(path, _LARGEST_MIB).decode("utf-8")
     except UnicodeDecodeError:
@@ -102,7 +102,7 @@ def _whole(words: list[str], where: str, what: str) -> list[int]:
 def _table(
     path: Path, section: str, rows: dict[int, tuple[int, list[int]]], count: int, products: int
 ) -> NDArray[np.int64]:
-    """Units per row and product."""
+    """Return the number of units per row and product."""
     if sorted(rows) != list(range(count)):
         raise InputError(f"{path}: {section}: must have the rows 0 to {count - 1}, each once")
     found = np.zeros((count, products), np.int64)

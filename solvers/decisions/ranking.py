@@ -1,4 +1,7 @@
-"""Tables of timed runs: gaps to the best known value, integrals, performance and data profiles."""
+"""Comparison of methods by timed runs: primal gaps and integrals, performance and data profiles.
+
+A *question* is a problem instance for an optimiser. A run solves one question with one method.
+"""
 
 from __future__ import annotations
 
@@ -20,14 +23,19 @@ MAXIMISED = frozenset({"run_bound"})
 
 
 def with_gaps(table: pd.DataFrame, best: Mapping[str, float] | None = None) -> pd.DataFrame:
-    """Return the table with two more columns: the best value of the question, and the primal gap.
+    """Add the columns `best` (best known value of the question) and `gap` (primal gap) to a table.
 
     Parameters
     ----------
     table
-        Rows of `profiling.points`.
+        Timed runs, one row per run, with the columns of `profiling.points`.
     best
-        Best known value of each question, by name; a better one in the table takes precedence.
+        Best known value of each question, by the name of the question. A better value in the
+        table takes precedence. Default: only the values in the table are known.
+
+    Returns
+    -------
+    A copy of the table with the two columns.
     """
     known = dict(best or {})
     sign = np.where(table["family"].isin(MAXIMISED), -1.0, 1.0)
@@ -47,13 +55,18 @@ def integrals(table: pd.DataFrame) -> pd.DataFrame:
     """Return primal integrals over wall time and over work for each question, method and seed.
 
     The integral over time ends at the duration of the longest run of any method on the question.
-    The integral over work ends at the method's own largest limit (or at its largest work, if that
-    is more), because methods count work in different units.
+    Methods count work in different units, so the integral over work ends at the largest work limit
+    of the method itself or, if the method exceeded this limit, at the largest work that it used.
 
     Parameters
     ----------
     table
-        As `with_gaps` returns it.
+        Timed runs with their gaps, as returned by `with_gaps`.
+
+    Returns
+    -------
+    One row per question, method and seed; the integrals are in the columns `over_wall` and
+    `over_work`.
     """
     end_s = table.groupby("question")["wall_s"].max().to_dict()
     rows = []
@@ -74,18 +87,19 @@ def integrals(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def times_to_gap(table: pd.DataFrame, gap: float) -> pd.DataFrame:
-    """Return the wall time, in s, in which each method reaches a gap on each question; inf: never.
+    """Return the wall time, in s, that each method needs to reach a given gap on each question.
 
     Parameters
     ----------
     table
-        As `with_gaps` returns it.
+        Timed runs with their gaps, as returned by `with_gaps`.
     gap
         Largest primal gap at which a question counts as solved.
 
     Returns
     -------
-    One row per question and seed, one column per method.
+    One row per question and seed, one column per method. An entry is inf if the method never
+    reaches the gap, and nan if there is no run of the method.
     """
     reached = table["wall_s"].where(table["gap"] <= gap, np.inf)
     frame = table.assign(reached=reached)
@@ -100,15 +114,16 @@ def performance(times: pd.DataFrame, ratios: Sequence[float]) -> pd.DataFrame:
     Parameters
     ----------
     times
-        As `times_to_gap` returns it.
+        Times to solve each question, as returned by `times_to_gap`.
     ratios
         Multiples of the shortest time in which any method solved a question.
 
     Returns
     -------
-    For each ratio (index) and method, the share of all questions that the method solved within
-    this multiple of the shortest time for the same question. A question that no method solved, or
-    for which there is no run of the method, counts as not solved by it.
+    One row per ratio, one column per method: the share of questions that the method solved within
+    this multiple of the shortest time of any method on the same question. Each pair of question
+    and seed counts as one question. If there is no run of a method on a question, the method
+    counts as not having solved it.
     """
     quickest = times.min(axis=1)
     ratio = times.div(quickest, axis=0).where(np.isfinite(times), np.inf)
@@ -121,10 +136,14 @@ def data_profile(times: pd.DataFrame, seconds: Sequence[float]) -> pd.DataFrame:
     Parameters
     ----------
     times
-        As `times_to_gap` returns it; a question without a run of a method is not counted for that
-        method.
+        Times to solve each question, as returned by `times_to_gap`. The share of a method covers
+        only the questions on which it was run.
     seconds
         Wall times in s.
+
+    Returns
+    -------
+    One row per wall time, one column per method.
     """
     return _shares(times, seconds)
 

@@ -1,4 +1,4 @@
-"""Recording of every question of a run as a file."""
+"""Recording of the questions that optimisers are asked during a run, one file per question."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class QuestionListener(Observer):
-    """Converts each question of a run, with its answer, to a `Decision` once it is answered.
+    """Converts each question asked during a run, together with its answer, to a `Decision`.
 
     Parameters
     ----------
@@ -29,7 +29,8 @@ class QuestionListener(Observer):
     Attributes
     ----------
     strange
-        Number of questions that belong to no known family, such as those of users' own optimisers.
+        Number of questions skipped because they belong to no known family, such as those of users'
+        own optimisers.
     """
 
     def __init__(self, run: Mapping[str, Any]) -> None:
@@ -39,7 +40,7 @@ class QuestionListener(Observer):
 
     @abstractmethod
     def take(self, decision: Decision) -> None:
-        """Handle a converted question."""
+        """Process a converted question; called once for each question of a known family."""
 
     def optimiser_asked(self, call: Call) -> None:
         """Remember the question until its answer arrives."""
@@ -51,7 +52,7 @@ class QuestionListener(Observer):
         self._told(call)
 
     def run_ended(self, time_s: float) -> None:
-        """Convert the questions that are still without an answer, and pass them to `take`."""
+        """Convert the questions that are still unanswered, and pass them to `take`."""
         for call in self._open.values():
             self._told(call)
         self._open.clear()
@@ -82,7 +83,7 @@ class QuestionListener(Observer):
 
 
 class DecisionRecorder(QuestionListener):
-    """Writes each question to a file.
+    """Writes each question of a run, with its answer, to a file.
 
     Parameters
     ----------
@@ -107,6 +108,6 @@ class DecisionRecorder(QuestionListener):
         self.written += write(decision, self._folder)
 
     def summary(self) -> str:
-        """Return one line on what was written."""
+        """Return one line that states how many questions were written and how many left out."""
         told = f"{self.written} questions written to {self._folder}"
         return f"{told}; {self.strange} of other families left out" if self.strange else told

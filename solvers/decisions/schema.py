@@ -1,5 +1,6 @@
 """The fields of the questions and answers of each family, in the format `rmfs-decision/1`.
 
+A *question* is a problem instance for an optimiser; questions of the same kind form a *family*.
 This module defines the format. It imports no model, so that answers can be checked independently of
 the models.
 """
@@ -42,16 +43,16 @@ class Field:
     Attributes
     ----------
     name
-        Its name; a field that belongs to a group has the name GROUP.NAME, such as `weights.travel`.
+        Name of the field; in a group of fields, GROUP.NAME, such as `weights.travel`.
     kind
-        Kind of its entries.
+        Kind of the entries, a key of `KINDS`.
     shape
-        One letter per dimension; empty for a single value. For the kind `lists`, one letter, which
-        stands for the number of lists.
+        Letters of the dimensions, separated by spaces, such as `P K`; empty for a single value.
+        For the kind `lists`, the letter of the number of lists.
     optional
-        Whether it may be omitted.
+        Whether the field may be omitted.
     meaning
-        Description, with the unit.
+        Description of the field, with the unit.
     texts
         Allowed values, if the kind is `text`.
     """
@@ -66,15 +67,15 @@ class Field:
 
 @dataclass(frozen=True)
 class Schema:
-    """One family of questions.
+    """The fields of the questions and answers of one family.
 
     Attributes
     ----------
     data, values
-        Fields of a question, and of an answer.
+        Fields of a question (`data`) and of an answer (`values`).
     derived
-        For dimensions that occur only in optional fields of the question: functions that compute
-        their sizes from other fields, by letter.
+        Functions that compute the size of a dimension from a question, by the letter of the
+        dimension. They are needed for dimensions that occur only in optional fields.
     maximise
         Whether the objective is maximised.
     """
@@ -403,7 +404,7 @@ refill_visits | real | Q | visits to replenishment stations
 
 
 def sizes(schema: Schema, data: Plain) -> dict[str, int]:
-    """Return the size of every dimension of a question, by its letter.
+    """Return the size of every dimension of a question, by the letter of the dimension.
 
     Parameters
     ----------
@@ -421,7 +422,7 @@ def sizes(schema: Schema, data: Plain) -> dict[str, int]:
 
 
 def described(family: str) -> str:
-    """Return the fields of a family as a table for the documentation.
+    """Return a Markdown table of the fields of a family, for the documentation.
 
     Parameters
     ----------

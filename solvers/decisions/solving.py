@@ -1,4 +1,4 @@
-"""Solution of questions by the models of rmfs, with a given method, limit of work and seed."""
+"""Solution of questions (problem instances) with a given method, limit of work and seed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _COUNTED: dict[str, Literal["nodes", "iterations"]] = {
 
 
 def methods(family: str) -> tuple[str, ...]:
-    """Return the methods for questions of a family, the default one first."""
+    """Return the names of the methods of a family, the default method first."""
     solve = families.family(family).solve
     return (solve.default, *(name for name in solve.names() if name != solve.default))
 
@@ -42,14 +42,14 @@ def rule(family: str) -> str:
 
 
 def limits_of(method: str, work: float | None) -> Limits:
-    """Return a limit of work as the `Limits` of a method.
+    """Convert a limit of work to the `Limits` for a method.
 
     Parameters
     ----------
     method
         Name of the method.
     work
-        The limit: a number of nodes for `highs`; of steps for `lns`, `beam` and `hadgs`; of
+        Limit of work: in nodes for `highs`, in steps for `lns`, `beam` and `hadgs`, and in
         deterministic seconds for other methods. None: no limit.
     """
     if work is None:
@@ -70,32 +70,35 @@ def solve(
     guard_s: float | None = None,
     where: str = "",
 ) -> Found:
-    """Solve a question, and check the answer.
+    """Solve a question, check the answer and return it.
 
     Parameters
     ----------
     decision
         The question.
     method
-        One of the family's methods, or `asked`: solve as in the run. Default: `asked` if a shipped
-        controller asked the question, and no `work`, `seed` or `start` is given; otherwise the
-        family's default.
+        Name of a method of the family, or `asked`: solve the question as in the run, regardless of
+        `guard_s`. Default: `asked` if a controller of rmfs asked the question, and no `work`,
+        `seed` or `start` is given; otherwise the default method of the family.
     work
-        Limit of work in the unit of the method. Default: none.
+        Limit of work, in the unit of the method (see `limits_of`). Default: none.
     seed
         Seed of the method. Default: 0.
     start
         Answer to start from. Default: none.
     guard_s
-        Wall time after which the method gives up with an error, in s. Default: none.
+        Wall time, in s, after which an error is raised. Default: none.
     where
-        What error messages call the question, such as the path of its file. Default: its name.
+        Name of the question in error messages, such as the path of its file. Default: the name of
+        the question itself.
 
     Raises
     ------
     InputError
         If there is no such method, if the model rejects the question, or if `asked` is combined
         with `work`, `seed` or `start`.
+    WrongError
+        If the answer breaks a rule or states a wrong objective or bound.
     WallGuardError
         If the method took longer than `guard_s`.
     """

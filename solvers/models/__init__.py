@@ -1,7 +1,7 @@
-"""Pure optimisation models: each takes a frozen dataclass of arrays and returns a `Solution`.
+"""Optimisation models: each takes a frozen dataclass of arrays and returns a `Solution`.
 
-The models do not depend on the simulation, so each can be solved, tested and timed without one.
-`rmfs.solvers.control` fills the arrays from a world and applies the solution.
+The models do not depend on the simulation, so they can be solved, tested and timed without it.
+`rmfs.solvers.control` fills the arrays from the state of a simulation and applies the solutions.
 """
 
 from rmfs.solvers.models.checks import ModelError as ModelError

@@ -32,7 +32,7 @@ def require(condition: bool, field: str, problem: str) -> None:
     Parameters
     ----------
     condition
-        What must be true.
+        The condition, which must be true.
     field
         The field that the condition is about.
     problem
@@ -215,7 +215,7 @@ def number(
     Raises
     ------
     ModelError
-        If it is out of range or not finite.
+        If the parameter is out of range or not finite.
     """
     return float(reals(field, value, (), low=low, high=high))
 

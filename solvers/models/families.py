@@ -43,12 +43,12 @@ class Family(Protocol):
 
 
 def family(name: str) -> Family:
-    """Import a family of models.
+    """Import a family of models, and return its package.
 
     Parameters
     ----------
     name
-        Its name in `FAMILIES`.
+        Name of the family, a key of `FAMILIES`.
 
     Raises
     ------

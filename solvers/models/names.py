@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 
 class Names:
-    """The name of each column of a program, and the decision it stands for.
+    """The name of each column of a program, and the decision that the column represents.
 
     Parameters
     ----------
@@ -28,19 +28,20 @@ class Names:
         self.means = [""] * columns
 
     def block(self, name: str, columns: ArrayLike, means: str = "", **indices: ArrayLike) -> None:
-        """Name a block of columns by their indices.
+        """Name the columns of a block after their indices, such as `call_p3_s1`.
 
         Parameters
         ----------
         name
-            Name of the block.
+            Name of the block, such as `call`.
         columns
             The columns of the block.
         means
-            The decision that a column makes if it is 1, with the letters of the indices in braces,
-            such as `pod_station[{p}] = {s}`.
+            The decision that a column makes if it is 1, with placeholders for the indices, such as
+            `pod_station[{p}] = {s}`. Default: none (auxiliary columns).
         indices
-            Index values by letter; they broadcast to the shape of the columns.
+            Values of each index; the keyword is the letter of the index. The values broadcast to
+            the shape of `columns`.
         """
         number = np.asarray(columns)
         arrays = [

@@ -33,12 +33,13 @@ class LinearProgram:
     lower, upper
         Bounds of each column, finite, shape (n,).
     integer
-        Whether each column must be an integer, shape (n,).
+        Whether each column must take an integer value, shape (n,).
     row_start, column, coefficient
-        The matrix A in compressed rows: row i holds ``coefficient[row_start[i]:row_start[i + 1]]``
-        in the columns ``column[row_start[i]:row_start[i + 1]]``, which are sorted and distinct.
+        The matrix A, shape (m, n), in compressed rows: row i has the coefficients
+        ``coefficient[row_start[i]:row_start[i + 1]]`` in the columns
+        ``column[row_start[i]:row_start[i + 1]]``, which are sorted and distinct.
     row_lower, row_upper
-        Bounds of each row, shape (m,); infinite if there is none.
+        Bounds of each row, shape (m,); -inf or inf if the row has no such bound.
     offset
         Constant part of the objective. Default 0.
 
@@ -97,17 +98,17 @@ class LinearProgram:
 
     @cached_property
     def matrix(self) -> csr_array:
-        """The matrix A as a SciPy array."""
+        """The matrix A as a sparse SciPy array, shape (rows, columns)."""
         return csr_array(
             (self.coefficient, self.column, self.row_start), shape=(self.rows, self.columns)
         )
 
     def objective(self, x: Floats) -> float:
-        """Value of the objective at a point."""
+        """Return the value of the objective at a point."""
         return float(self.cost @ x) + self.offset
 
     def violation(self, x: Floats) -> float:
-        """Largest violation of a bound, a row or integrality at a point; 0 if there is none."""
+        """Return the largest violation of a bound, a row or integrality at a point; 0 if none."""
         activity = np.asarray(self.matrix @ x)
         broken = [
             self.lower - x,
@@ -149,10 +150,10 @@ class ProgramBuilder:
         shape
             Shape of the block.
         cost, lower, upper
-            Values of that shape, or values that broadcast to it. Defaults: 0, 0 and 1.
+            Cost and bounds of the columns, broadcast to `shape`. Defaults: 0, 0 and 1.
         integer
-            Whether the columns must be integers. Default: yes; with the default bounds, they are
-            then binary.
+            Whether the columns must take integer values. Default: yes (with the default bounds, the
+            columns are then binary).
 
         Returns
         -------
@@ -181,9 +182,9 @@ class ProgramBuilder:
             Number of rows in the block.
         entries
             Triples of arrays (row within the block, column, coefficient); the three arrays of a
-            triple are broadcast to one shape. Entries in the same position add up.
+            triple are broadcast to one shape. Entries with the same row and column add up.
         lower, upper
-            Bounds of each row, or one for all rows. Default: none.
+            Bounds of the rows: one value per row, or one for all rows. Defaults: -inf and inf.
         """
         for row, column, value in entries:
             r, c, v = np.broadcast_arrays(
@@ -206,8 +207,8 @@ class ProgramBuilder:
 
         Returns
         -------
-        The program; the entries of a row are sorted by column, and those in the same position are
-        added up.
+        The program; the entries of a row are sorted by column, and entries with the same row and
+        column are added up.
         """
         row = _joined([entry[0] for entry in self._entries], np.int64)
         column = _joined([entry[1] for entry in self._entries], np.int64)
@@ -229,5 +230,5 @@ class ProgramBuilder:
 
 
 def _joined(parts: list[NDArray[Kind]], kind: type[Kind]) -> NDArray[Kind]:
-    """Concatenate, also an empty list."""
+    """Concatenate arrays; an empty list gives an empty array."""
     return np.concatenate(parts) if parts else np.zeros(0, dtype=kind)

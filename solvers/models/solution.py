@@ -1,6 +1,6 @@
-"""The result of every model, and the limits of solvers.
+"""The result of a solve, and its limits; all models use both.
 
-Solvers are limited in deterministic work, not in time, so the same input gives the same output
+A solve is limited in deterministic work, not in time, so the same input gives the same output
 however busy the machine is. There is also a wall-clock guard, but it can only raise an error.
 """
 
@@ -26,7 +26,7 @@ BOUND_TOLERANCE = 1e-6
 
 
 class WallGuardError(RuntimeError):
-    """A solver reached its wall-clock guard.
+    """A solve took longer than its wall-clock guard allows.
 
     No result is returned, because it would not be reproducible.
     """
@@ -67,18 +67,19 @@ class Limits:
     Parameters
     ----------
     deterministic_s
-        Limit of CP-SAT, or of column generation, in deterministic seconds (each roughly a second of
-        one core, but counted in operations). Default: none.
+        Limit on the work of CP-SAT or of column generation, in deterministic seconds. A
+        deterministic second is a fixed amount of counted work, which takes one core roughly a
+        second. Default: none.
     nodes
-        Limit of HiGHS in nodes of its branch and bound. Default: none.
+        Maximum number of branch-and-bound nodes of HiGHS. Default: none.
     iterations
-        Limit of the simplex method on an LP, of an interior-point method, or of a heuristic or
-        search that works in steps, in its iterations. Default: that of the method.
+        Maximum number of iterations of the simplex method (for LPs only), of an interior-point
+        method, or of a heuristic or search that works in steps. Default: that of the method.
     gap
-        Relative gap at which a solve counts as optimal. Default 0.
+        Maximum relative gap of a solution that counts as optimal. Default 0.
     wall_guard_s
-        Wall-clock seconds after which the solve raises `WallGuardError`. It never affects a result.
-        Default: none.
+        Wall-clock seconds after which the solve raises `WallGuardError`. This guard never changes a
+        result. Default: none.
 
     Raises
     ------
@@ -112,17 +113,17 @@ class Solution(Generic[V_co]):
     values
         The decision; None if `status` is INFEASIBLE or LIMIT.
     objective
-        Value of the model's objective function (never the number that a solver reports);
+        Objective value, computed by the model's own objective function, not reported by a solver;
         `sense.worst` if there are no values.
     bound
-        A proven bound on the best objective: a lower bound if it is minimised, an upper bound if it
-        is maximised; ``-sense.worst`` if nothing is known.
+        A proven bound on the optimal objective value: a lower bound if the objective is minimised,
+        an upper bound if it is maximised; ``-sense.worst`` if no bound is known.
     status
         The outcome of the solve.
     backend
         Name of the back end, such as ``"cp_sat"``, ``"highs"``, ``"rule"``.
     wall_s
-        Wall-clock seconds of the whole call, including building; not reproducible.
+        Wall-clock seconds of the whole call, including `build_s`; not reproducible.
     build_s
         The part of `wall_s` spent building the solver's model from the arrays.
     work
@@ -130,14 +131,14 @@ class Solution(Generic[V_co]):
     sense
         Whether the objective is minimised or maximised. Default: minimised.
     built
-        Work spent building: the number of nonzeros of the programs passed to a solver, plus, for
-        any other building, the number of nonzeros that would take the same time. Deterministic,
-        like `work`.
+        Deterministic work spent building models, counted in nonzeros. Programs passed to a solver
+        count with the number of their nonzeros; other models count with the number of nonzeros that
+        would take as long to build.
 
     Raises
     ------
     ModelError
-        If the attributes contradict each other, such as a bound beyond the objective.
+        If the attributes contradict each other, for example if the bound is beyond the objective.
     """
 
     values: V_co | None
@@ -171,7 +172,8 @@ class Solution(Generic[V_co]):
     def gap(self) -> float:
         """Relative gap between objective and bound, ``|objective - bound| / |objective|``.
 
-        It is inf if unknown, and 0 if rounding puts the bound beyond the objective.
+        The gap is inf if there is no solution or no bound, and 0 if rounding puts the bound beyond
+        the objective.
         """
         if not self.found or math.isinf(self.bound):
             return math.inf
@@ -180,17 +182,17 @@ class Solution(Generic[V_co]):
 
     @property
     def solve_s(self) -> float:
-        """Wall-clock seconds without building."""
+        """Wall-clock seconds of the call without those spent building the solver's model."""
         return self.wall_s - self.build_s
 
     @property
     def required(self) -> V_co:
-        """The values, for callers that know that they exist.
+        """The values, never None.
 
         Raises
         ------
         ValueError
-            If there are none.
+            If there are no values.
         """
         if self.values is None:
             raise ValueError(f"no values: {self.backend} ended with {self.status.value}")
@@ -219,15 +221,15 @@ def solution_of_rule(
     Parameters
     ----------
     values
-        The heuristic's solution; None if it found none, or only an infeasible one.
+        The heuristic's solution; None if it found no feasible solution.
     objective
         The model's objective function.
     bound
-        A proven lower bound; +inf if it proves infeasibility.
+        A proven lower bound; +inf if the problem is proven infeasible.
     work
         Number of candidates scored.
     began
-        Start time by `time.perf_counter`.
+        Time when the call began, by `time.perf_counter`.
     built
         As for `Solution`. Default 0.
     """

@@ -40,20 +40,21 @@ HEAD = """\
 
 Times are milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 20 pick
 and 12 replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 200 bundles. Each
-rule is measured in a run of its own, of five simulated minutes. The other problems have their
-default rules, unless the rule or the row requires others.
+rule is measured in a run of its own, of five simulated minutes. The other problems are decided by
+their default rules, except where the measured rule needs other rules or its row names them.
 
-A *call* asks a controller once and may result in several decisions or in none. The column *median,
+In a *call*, a controller is asked once; it makes one decision, several or none. The column *median,
 decision* shows the median of the time per decision: the time of a call divided by the number of its
-decisions. Calls without decisions count only if no call resulted in a decision. The other columns
-are mean, 95 % quantile and maximum of the times of all calls. If a controller consults others,
-their time is not counted for it. Rows such as *only age* are PPS `lexicographic` with that
-criterion alone; ties are broken at random. In the row *all pooled orders count*, PPS considers all
-orders in the pools of POA `queue`, not only those that a pod completes. This page is written by
+decisions. For this column, calls without decisions are left out; if the rule made no decision at
+all, every call counts. The other columns are the mean, the 95 % quantile and the maximum of the
+times of all calls. If a controller asks other controllers during its call, their time is not
+included. Rows such as *only age* stand for PPS `lexicographic` with this criterion alone; ties are
+broken at random. In the row *all pooled orders count*, PPS considers all orders in the pools of POA
+`queue`, not only those that a pod completes. This page is written by
 `python -m tests.tools.decision_times`.
 
 For every rule, the median should stay below one millisecond. The benchmarks
-(`pytest -m benchmark tests/control`), which time a single decision repeatedly, require the same.
+(`pytest -m benchmark tests/control`), which time a single decision repeatedly, have the same limit.
 """
 
 
@@ -198,9 +199,9 @@ def page(frame: pd.DataFrame, share: Mapping[str, float]) -> str:
     rest = 1 - share["decisions"] - share["planning"]
     lines = [
         HEAD,
-        f"With the default rules, decisions take {share['decisions']:.0%} of the wall time of such "
-        f"a run (one simulated hour), path planning {share['planning']:.0%}, and everything else "
-        f"{rest:.0%} (each rounded).\n",
+        f"With the default rules, decisions take {share['decisions']:.0%} of the wall time of a "
+        "run of one simulated hour in this warehouse, path planning "
+        f"{share['planning']:.0%}, and everything else {rest:.0%} (each rounded).\n",
         "| problem | rule | calls | decisions "
         "| median, decision | mean, call | 95 %, call | max, call |",
         "|---|---|---:|---:|---:|---:|---:|---:|",

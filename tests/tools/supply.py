@@ -261,12 +261,12 @@ def known_weaknesses() -> str:
         sum(row["ecosystem"] == kind for row in mended) for kind in ("cargo", "pypi")
     )
     paragraph = f"""Known vulnerabilities: no known advisory applies. PyPI was queried on {days} and
-listed none for {len(clear)} of the {len(rows)} locked versions of Python packages. PyPI only
-answers for the newest version of a package. The other {len(untold)} locked versions are older, so
-there is no answer for them: {", ".join(untold)}. All locked versions were also compared with stored
-advisories: {crates} on the crates, from a copy of the RustSec database of June 2026, and {packages}
-on Python packages, published from 2021 to 2023, from the PyPA database. `python -m
-tests.tools.supply --ask` queries PyPI again."""
+listed none for {len(clear)} of the {len(rows)} locked versions of Python packages. The query
+gave answers only for the newest version of each package. The other {len(untold)} locked versions
+are older, so there is no answer for them: {", ".join(untold)}. All locked versions were also
+compared with stored advisories. These are {crates} advisories on the crates (from a copy of the
+RustSec database of June 2026) and {packages} on Python packages (published from 2021 to 2023, from
+the PyPA database). `python -m tests.tools.supply --ask` queries PyPI again."""
     return textwrap.fill(paragraph, 100, break_long_words=False, break_on_hyphens=False)
 
 
@@ -278,19 +278,19 @@ def page(parts: list[Part]) -> str:
     return f"""# Dependencies
 
 This page lists all packages that rmfs uses, in the versions of the lock files, with the licence
-that each package states. A test checks that all licences are compatible with rmfs's own, the MIT
-licence. The file `docs/sbom.cdx.json` contains the same list as a bill of materials (CycloneDX
-1.5). `python -m tests.tools.supply` writes this page and that file, and compares the locked
-versions with stored advisories, without a network.
+that each package states. A test checks that all licences are compatible with the licence of rmfs,
+the MIT licence. The file `docs/sbom.cdx.json` contains the same list as a bill of materials
+(CycloneDX 1.5). `python -m tests.tools.supply` writes this page and the bill of materials. It also
+compares the locked versions with stored advisories; this needs no network.
 
-Packages are installed separately, with two exceptions. The compiled core (path planning and other
-fast parts, in Rust) is linked with the Rust crates. The page of the [viewer](viewer.md) contains
-three.js and uPlot. The licences of three.js and uPlot are in `rmfs/view/static/notices.txt`, which
+Packages are installed separately, with two exceptions. The Rust crates are linked into the compiled
+core (path planning and other fast parts). The JavaScript packages three.js and uPlot are contained
+in the page of the [viewer](viewer.md). Their licences are in `rmfs/view/static/notices.txt`, which
 is part of the wheel, and at the top of the page's script, so exported pages contain them as well.
 
-The last column states what needs a package: the compiled core, the page of the viewer, every
-installation at run time, or only optional extras and development. A Python package with two
-versions is locked for Python below 3.12 and from 3.12 on.
+The last column states what a package is needed for: the compiled core, the page of the viewer,
+every installation at run time, or only optional extras and development. If a Python package is
+listed in two versions, the lower one is for Python 3.11, the other for Python 3.12 and newer.
 
 {known_weaknesses()}
 

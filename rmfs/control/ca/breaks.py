@@ -50,7 +50,7 @@ class Breaks(ByLevel[BreaksParameters]):
     parameters_model = BreaksParameters
 
     def next_event_s(self) -> float:
-        """Simulated time in s at which the next break starts; inf if there is none."""
+        """Return the simulated time in s at which the next break starts; inf if there is none."""
         given, view = self.parameters, self.view
         if view.batteries is None or not given.breaks_s:
             return inf

@@ -43,7 +43,7 @@ class ByDemandParameters(LevelParameters):
 
 
 class ByDemand(ByLevel[ByDemandParameters]):
-    """Sends robots to charge earlier, at a higher level, while few orders arrive.
+    """Sends robots to charge; while few orders arrive, at a higher battery level than otherwise.
 
     As a result, fewer robots need to charge while many orders arrive.
     """
@@ -77,8 +77,8 @@ class ByDemand(ByLevel[ByDemandParameters]):
     def is_calm(self) -> bool:
         """Return whether few orders arrived in the last window.
 
-        This is so if their rate is below `calm_share` times the mean rate since the rule was
-        installed; it is never so before two windows have passed.
+        The result is true if their rate is below `calm_share` times the mean rate since the rule
+        was installed. Until two windows have passed, it is always false.
         """
         now_s, window_s = self.view.now_s, self.parameters.window_s
         while self._arrivals and self._arrivals[0] < now_s - window_s:

@@ -34,7 +34,7 @@ class PlaceParameters(Parameters):
 
 
 class LevelParameters(PlaceParameters):
-    """Parameters of rules with two levels."""
+    """Parameters of rules with a level at which charging starts and another at which it ends."""
 
     below_share: Share = 0.3
     """A robot charges when its level falls below this share of the capacity."""
@@ -65,7 +65,7 @@ class ByLevel(ChargeAssignment[P]):
         """
 
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
-        """Yield decisions that send robots to charge, then those by which robots give up places."""
+        """Yield decisions that send robots to charge, then those that make them give up places."""
         batteries = self.view.batteries
         if batteries is None:
             return
@@ -94,7 +94,7 @@ class ByLevel(ChargeAssignment[P]):
             yield Charge(robot, station, until)
 
     def _hand_over(self, shares: list[float], gap: float) -> Iterator[Unplug]:
-        """Make robots leave whose place is awaited by a robot with a much lower level."""
+        """Make a robot leave its charger if a robot with a much lower level waits for it."""
         for station in self.view.chargers:
             here = station.robot
             waiting = [shares[robot] for robot in station.tasks if robot != here]

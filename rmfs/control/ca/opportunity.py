@@ -62,7 +62,10 @@ class Opportunity(ByLevel[OpportunityParameters]):
                 return
 
     def next_event_s(self) -> float:
-        """Simulated time in s of the next check of robots at rest; inf without batteries."""
+        """Return the simulated time, in s, of the next check of robots at rest.
+
+        The result is inf if robots have no batteries.
+        """
         period_s = self.parameters.period_s
         now_s = self.view.now_s
         return inf if self.view.batteries is None else (now_s // period_s + 1) * period_s

@@ -19,7 +19,7 @@ PlaceRule = Literal["least-queued", "nearest", "soonest"]
 
 
 def has_room(view: View, station: RecoveryStation) -> bool:
-    """Return whether the queue of a station has a place for another robot."""
+    """Return whether the queue of a station has room for another robot besides those on the way."""
     return len(station.tasks) < len(view.layout.stations[station.index].queue)
 
 
@@ -46,7 +46,7 @@ def choose(
 ) -> int:
     """Return the number of the energy station chosen for a robot, or -1.
 
-    The number is -1 if no station may be chosen, or the chosen one cannot be reached.
+    The result is -1 if no station may be chosen, or if the chosen station cannot be reached.
 
     Parameters
     ----------

@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 
 
 class Threshold(ByLevel[LevelParameters]):
-    """Makes a robot charge when its battery level is below one threshold, until it reaches another.
+    """Makes a robot charge when its battery level is below `below_share`, up to `until_share`.
 
-    The thresholds are called `threshold_soc` and `recharge_soc` in Open-RMF, and replenish and
-    release points in DELMIA.
+    These two thresholds are called `threshold_soc` and `recharge_soc` in Open-RMF, and replenish
+    and release points in DELMIA.
     """
 
     parameters_model = LevelParameters

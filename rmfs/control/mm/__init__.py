@@ -20,9 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class MethodManagement(Controller[P]):
     """Decides which controllers are replaced by which others, and when.
 
-    If several controllers are to decide at the same instant, this one comes first. The commitments
-    made by a controller (bundles promised to pods, tasks of robots) are stored outside it, so they
-    remain in force when the controller is replaced.
+    If several controllers are to decide at the same instant, MM decides first. Commitments that a
+    controller has made (bundles promised to pods, tasks of robots) are not stored in the
+    controller, so they remain in force when it is replaced.
     """
 
     problem = Problem.MM

@@ -20,8 +20,8 @@ P = TypeVar("P", bound=Parameters)
 class PickOrderAssignment(Controller[P]):
     """Assigns orders of the backlog (`view.orders`) to pick stations with free slots.
 
-    Each decision is applied immediately: when the controller is resumed, an assigned order has left
-    the backlog and occupies its slot. Orders that are not chosen wait until the next call. A
+    Each decision that `decide` yields is applied before `decide` continues: by then, an assigned
+    order has left the backlog and occupies its slot. Orders not chosen wait until the next call. A
     controller may also put orders into the pool of a station (`QueueOrder`), so that pods can be
     fetched for them before a slot is free.
     """

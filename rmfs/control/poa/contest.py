@@ -1,4 +1,4 @@
-"""The orders that compete for one station; the criteria of POA queue rate them."""
+"""Orders that compete for one station, and are rated by the criteria of the POA rule `queue`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Contest:
-    """N backlog orders that compete for a place in the pool of a station, or for one of its slots.
+    """N backlog orders that compete for a place in the pool of a station, or for a slot there.
 
     Attributes
     ----------
@@ -26,7 +26,7 @@ class Contest:
         Whether the orders compete for a place in the pool; otherwise they compete for a slot.
     sku, units
         SKU of each order line, and the number of the line's units that are not yet bound to a pod,
-        shape (N, L).
+        shape (N, L). An order has at most L lines; in unused columns, there are 0 units.
     """
 
     def __init__(
@@ -71,10 +71,10 @@ class Contest:
         return [at_row[row] for row in self.rows.tolist()]
 
     def claimed(self) -> NDArray[np.int32]:
-        """Return, for each SKU, how many units other orders need first, shape (K,).
+        """Return, for each of the K SKUs, how many units other orders need first, shape (K,).
 
-        These other orders are the ones with a slot at the station and, if the contest is for the
-        pool, also those already in the pool. Only units that are not yet bound to a pod count.
+        These other orders are those with a slot at the station and, if the contest is for the pool,
+        also those already in the pool. Only units that are not yet bound to a pod count.
         """
         claimed: NDArray[np.int32] = self.view.need[self.station.index]
         if self.for_pool:
@@ -82,10 +82,10 @@ class Contest:
         return claimed
 
     def company(self) -> NDArray[np.bool_]:
-        """Return which SKUs occur in orders with a slot at the station, shape (K,).
+        """Return which of the K SKUs occur in the present orders of the station, shape (K,).
 
-        Lines count even if they have been picked. If the contest is for the pool, the orders in
-        the pool count instead of those with a slot.
+        These are the orders in the pool if the contest is for the pool, else the orders with a slot
+        at the station. Lines that have already been picked count, too.
         """
         wanted = np.zeros(len(self.view.skus), np.bool_)
         if self.for_pool:
@@ -109,8 +109,8 @@ class Contest:
     def completed_by(self, pod: int) -> NDArray[np.bool_]:
         """Return which orders a pod, at the station or on its way there, can complete, shape (N,).
 
-        For this, the pod must have all units that an order still needs, in addition to those that
-        orders with a slot need; and no unit of the order may be bound to another pod.
+        A pod can complete an order if it has all units that the order still needs, in addition to
+        those that orders with a slot need, and if no unit of the order is bound to another pod.
         """
         spare = self.view.inventory.available[:, pod][self.sku]
         spare = spare - self.view.need[self.station.index][self.sku]
@@ -125,8 +125,8 @@ class Contest:
     def completed_by_all(self) -> NDArray[np.bool_]:
         """Return which orders the `inbound` pods can complete together, shape (N,).
 
-        For this, the pods must have all units that an order still needs, in addition to those that
-        `claimed` counts.
+        The pods can complete an order if they have all units that the order still needs, in
+        addition to those that `claimed` counts.
         """
         spare = self.view.inventory.inbound[self.station.index][self.sku]
         spare = spare - self.claimed()[self.sku]

@@ -41,7 +41,7 @@ class FirstCome(Parameters):
     criterion: Literal["first-come"] = "first-come"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return the negative of each order's ordinal of arrival."""
+        """Return the negative of each order's number in the sequence of arrivals."""
         return -contest.view.orders.index[contest.rows]
 
 
@@ -69,17 +69,20 @@ class DueSoon(Parameters):
 
 
 class Weight(Parameters):
-    """Prefers orders with the highest weight of lateness (given by their class)."""
+    """Prefers the orders whose lateness has the highest weight, which is set per order class."""
 
     criterion: Literal["weight"] = "weight"
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return each order's weight of lateness."""
+        """Return the weight of each order's lateness."""
         return contest.view.orders.weight[contest.rows]
 
 
 class FirstWave(Parameters):
-    """Prefers orders of the first wave: late orders, the order due next, and those due with it."""
+    """Prefers orders of the first wave.
+
+    The wave consists of late orders and of those due at most `wave_s` after the next due time.
+    """
 
     criterion: Literal["wave"] = "wave"
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
@@ -102,7 +105,7 @@ class Size(Parameters):
     """Whether size is counted in unpicked units or in order lines."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return the number of unpicked units, or of lines."""
+        """Return each order's number of unpicked units, or of order lines, as `count` requires."""
         if self.count == "lines":
             sizes = [len(order.lines) for order in contest.orders()]
         else:
@@ -129,11 +132,12 @@ class Completable(Parameters):
 class InboundMatches(Parameters):
     """Prefers orders with the most SKUs on inbound pods; near pods count more.
 
-    Inbound pods are at the station or on their way there. An order is assumed to take its units
-    from the nearest of them that can spare any. For each SKU and each pod from which it is taken,
-    the order scores one point; if the pod counts as near, the order scores another point for each
-    inbound pod that is farther away. A pod counts as near if the number of units of the SKU taken
-    from it, times its distance in m, is at most `near_unit_metres`.
+    Inbound pods are at the station or on their way there. It is assumed that an order takes its
+    units from these pods, nearest first, as far as the pods can spare them. For each pair of a SKU
+    and a pod from which units of the SKU are taken, the order scores one point. If the pod counts
+    as near, the order scores another point for each inbound pod that is farther away. A pod counts
+    as near if the number of units of the SKU taken from it, times the pod's distance from the
+    station in m, is at most `near_unit_metres`.
     """
 
     criterion: Literal["inbound-matches"] = "inbound-matches"
@@ -215,7 +219,7 @@ def best(
 ) -> tuple[Contest, int] | None:
     """Find the best order by the first criterion; each further criterion breaks remaining ties.
 
-    Ties that all criteria leave go to the order that arrived first, then to the first contest.
+    If all criteria leave a tie, it goes to the order that arrived first, then to the first contest.
 
     Parameters
     ----------

@@ -45,13 +45,13 @@ class _Visit:
 class FastLane:
     """Assigns orders of the backlog to stations whose current pod can complete them.
 
-    Stations are considered in order of their numbers, and orders in order of `rank`. Units that
-    orders already at the station need from the pod are not available to other orders.
+    Stations are considered by ascending number, and orders by ascending `rank`. Units that orders
+    already at the station need from the pod are not available to other orders.
 
     Parameters
     ----------
     rank
-        Function that returns the key by which orders compete; the smallest wins.
+        Function that returns the rank of an order; the order with the smallest rank comes first.
     """
 
     def __init__(self, view: View, rank: Callable[[Order], tuple[float, int]]) -> None:
@@ -82,9 +82,10 @@ class FastLane:
                 yield AssignOrder(order, index)
 
     def promising(self) -> list[int]:
-        """Return stations with a free slot whose pod may complete an order, ascending.
+        """Return the stations with a free slot whose pod may complete an order, lowest first.
 
-        Only stations with news are checked, unless there are new orders.
+        Only stations that have changed since the last call are checked; if there are new orders,
+        all stations with a free slot are.
         """
         newest = next(reversed(self._view.orders.orders), -1)
         changed, serving = self._news.take(), self._serving
@@ -110,7 +111,7 @@ class FastLane:
         Parameters
         ----------
         new
-            Orders newer than a given index, where already looked up.
+            Orders newer than a given index, by that index; missing entries are added.
         """
         view, visit = self._view, self._visits[index]
         station = view.pick_stations[index]

@@ -27,10 +27,12 @@ class FastLaneParameters(Parameters):
     """Parameters of POA rules with a fast lane."""
 
     fast_lane: bool = False
-    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
-    first. Stations with several slots reserve one for the fast lane."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to
+    this station first (fast lane). Stations with several slots reserve one of them for such
+    orders."""
     fast_lane_tie_breaker: TieBreaker = "due-time"
-    """Tie-breaker among orders for the fast lane: earliest due time, first arrival, or random."""
+    """Which order takes the fast lane if there are several: the one due first (`due-time`), the one
+    that arrived first (`first-come`), or a random one (`random`)."""
 
 
 P = TypeVar("P", bound=Parameters)
@@ -57,7 +59,7 @@ class Filling(PickOrderAssignment[P]):
 
     @abstractmethod
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose a backlog order that stock can serve, and one of the given stations.
+        """Choose the next assignment: a backlog order that stock can serve, and one of `stations`.
 
         Return None if no order should be assigned now.
 
@@ -80,7 +82,7 @@ class Filling(PickOrderAssignment[P]):
             yield chosen
 
     def _stations_to_fill(self) -> list[PickStation]:
-        """Stations with a slot to fill, ascending; only those with news are checked."""
+        """Return the stations with a slot to fill, ascending; only changed ones are checked."""
         stations, to_fill = self.view.pick_stations, self._to_fill
         changed = self._news.take()
         if not changed and not to_fill:

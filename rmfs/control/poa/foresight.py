@@ -1,4 +1,4 @@
-"""POA foresight: assigns the station-order pair with the best score; a second breaks ties."""
+"""POA foresight: assigns the station-order pair with the best score; a second score breaks ties."""
 
 from __future__ import annotations
 
@@ -25,23 +25,24 @@ class ForesightParameters(Parameters):
     """Parameters of POA foresight."""
 
     score: Score = "matches"
-    """Primary score. `matches`: number of the order's units for which pods at the station or on
-    their way there have spare stock. `depletion`: the same, plus 1 for each line for which one
-    of these pods has exactly the number of units needed. `surplus`: `matches`, plus 1 for each line
-    for which one of them has at least that number. `due-time`: the earlier the due time, the
-    higher."""
+    """Score of a pair of station and order. `matches`: number of units of the order that pods at
+    the station, or on their way to it, can supply from spare stock. `depletion`: `matches`, plus 1
+    for each order line for which one of these pods has exactly the units needed. `surplus`:
+    `matches`, plus 1 for each order line for which one of these pods has at least the units needed.
+    `due-time`: the earlier the due time, the higher the score."""
     tie_breaker: Score = "due-time"
-    """Secondary score, which breaks ties of the primary score."""
+    """Second score, which is used for pairs with the same `score`. The values are those of
+    `score`."""
 
 
 class Foresight(Filling[ForesightParameters]):
-    """Assigns the station-order pair that has the highest score, then the next pair, and so on.
+    """Repeatedly assigns the pair of station and order with the highest score.
 
-    Ties are broken by the secondary score, then in favour of the station with the most free slots,
-    the station with the lowest number, and the order that arrived first. Spare stock (see
-    the parameter `score`) is stock that orders already at the station do not need. For the
-    additional points of the scores `depletion` and `surplus`, however, all available units of a pod
-    count, even those that other orders need.
+    Ties are broken by a second score (`tie_breaker`). Remaining ties go to the station with the
+    most free slots, then to the station with the lowest number, then to the order that arrived
+    first. Spare stock (see the parameter `score`) is stock that the open orders of the station do
+    not need. For the additional points of `depletion` and `surplus`, however, all available units
+    of a pod count, even those that other orders need.
     """
 
     parameters_model = ForesightParameters

@@ -22,8 +22,9 @@ class LinearParameters(FastLaneParameters):
     """Parameters of POA linear."""
 
     fast_lane: bool = True
-    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
-    first. Stations with several slots reserve one for the fast lane."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to
+    this station first (fast lane). Stations with several slots reserve one of them for such
+    orders."""
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("poa"))
     """Weights of the scaled features of a pair of order and station (see the page on learning)."""
 
@@ -34,17 +35,17 @@ class LinearParameters(FastLaneParameters):
 
 
 class Linear(Filling[LinearParameters]):
-    """Assigns the station-order pair with the greatest weighted sum of features, then the next.
+    """Repeatedly assigns the pair of station and order with the greatest weighted sum of features.
 
-    All stations with a free slot are paired with all orders that stock can serve. Unless the fast
-    lane is switched off, orders for it come first. Ties go to the order that arrived first, then to
-    the station with the lowest number.
+    All stations with a free slot are paired with all orders that stock can serve. Unless
+    `fast_lane` is false, orders for the fast lane come first. Ties go to the order that arrived
+    first, then to the station with the lowest number.
     """
 
     parameters_model = LinearParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the pair with the greatest weighted sum."""
+        """Choose the pair of an order and a station with the greatest weighted sum of features."""
         found = candidates_for(self.view, Question(Problem.POA, "turn"))
         numbers = [station.index for station in stations]
         served = (found.columns["in_stock"] > 0) & np.isin(found.columns["station"], numbers)

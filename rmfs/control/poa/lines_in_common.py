@@ -15,12 +15,13 @@ if TYPE_CHECKING:
 
 
 class LinesInCommon(BestPair[PairParameters]):
-    """Groups orders for the same SKUs at a station; the best pair of order and station comes first.
+    """Groups orders for the same SKUs at the same station.
 
-    The score of a pair is the sum, over the lines of the order, of the number of orders at the
-    station with a line for the same SKU, even if that line has been picked. The pair with the
-    highest score is assigned, then the next, until no order can be assigned. Ties are broken by the
-    tie-breaker, then by arrival, then by station number.
+    Each line of an order adds to the order's score at a station the number of orders there that
+    have a line for the same SKU, picked or not. The pair of order and station with the highest
+    score is assigned; this is repeated until no order can be assigned. Ties are broken by
+    `tie_breaker`; remaining ties go to the order that arrived first, then to the station with the
+    lowest number.
     """
 
     parameters_model = PairParameters

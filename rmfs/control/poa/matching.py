@@ -1,4 +1,4 @@
-"""How well orders match the pods at a station or on their way there."""
+"""How well orders match the pods at a station or on their way to it."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
-    """Return how many units of the B backlog orders the pods of S stations can supply, (S, B).
+    """Return how many units of each backlog order the pods of each station can supply, (S, B).
 
-    The pods of a station are at the station or on their way there. They can supply what they have
-    available in addition to the units that orders at the station still need from pods.
+    The pods of a station are those at the station and those on their way to it. Of their available
+    units, as many as the station's open orders still need are not counted.
     """
     sku, units = view.orders.sku, view.orders.units
     found = np.empty((len(stations), len(sku)), np.int32)

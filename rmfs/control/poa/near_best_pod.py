@@ -22,23 +22,25 @@ class NearBestPodParameters(Parameters):
     """Parameters of POA near-best-pod."""
 
     metric: Metric = "path"
-    """Distance from pod to station: Euclidean, Manhattan, length of the shortest path of a loaded
-    robot, or the robot's unhindered travel time."""
+    """Measure of the distance from pod to station: `euclidean` or `manhattan` (in m), `path` (in m
+    along the shortest path of a loaded robot) or `time` (in s, of a loaded robot that no other
+    robot delays)."""
 
 
 class NearBestPod(Filling[NearBestPodParameters]):
     """Sends an order to the station that is nearest to the best pod for the order.
 
     Orders are assigned in the sequence of their arrival; those that stock cannot serve are skipped.
-    The best pods for an order are the stored pods with the most of its units available; the station
-    nearest to any of them is chosen. Ties go to the station with the lowest number. If no stored
-    pod has a unit of the order, the station with the fewest open orders is chosen.
+    The best pods for an order are the stored pods that can supply the most units of the order. The
+    station with the shortest distance from one of these pods is chosen. If no stored pod can supply
+    a unit, the station with the fewest open orders is chosen. Ties go to the station with the
+    lowest number.
     """
 
     parameters_model = NearBestPodParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the oldest order that stock can serve, and a station by distance."""
+        """Choose the oldest order that stock can serve, and the station nearest to a best pod."""
         order = self.oldest_order()
         if order is None:
             return None

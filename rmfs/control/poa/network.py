@@ -1,4 +1,4 @@
-"""POA network: assigns the pair of order and station that a network scores highest."""
+"""POA network: assigns the pair of order and station that a neural network scores highest."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class NetworkParameters(ScoringParameters):
     """Parameters of POA network."""
 
     network: Network = pydantic.Field(default_factory=lambda: start("poa"))
-    """The network that scores pairs of order and station (see the page on learning)."""
+    """Neural network that scores pairs of order and station (see the page on learning)."""
 
     @pydantic.field_validator("network")
     @classmethod
@@ -34,10 +34,12 @@ class NetworkParameters(ScoringParameters):
 
 
 class NetworkRule(PickOrderAssignment[NetworkParameters]):
-    """Assigns the pair of order and station with the highest score, then the next.
+    """Repeatedly assigns the pair of order and station that a neural network scores highest.
 
-    All stations with a free slot are paired with all orders of the backlog. There is no fast lane.
-    The rule stops when declining has a higher score than every pair.
+    Every active station with a free slot is paired with every order of the backlog, except orders
+    in the pool of another station. The parameter `candidates` limits how many pairs are scored.
+    There is no fast lane. The network also scores the option to assign no order (declining). The
+    rule stops when this score is higher than that of every pair.
     """
 
     parameters_model = NetworkParameters
@@ -47,7 +49,7 @@ class NetworkRule(PickOrderAssignment[NetworkParameters]):
         self._scorer = Scorer("poa", parameters.network, parameters.candidates)
 
     def decide(self) -> Iterator[AssignOrder]:
-        """Yield assignments until declining is better."""
+        """Yield assignments until assigning no order has the highest score."""
         while True:
             found = candidates_for(self.view, Question(Problem.POA, "turn"))
             row = self._scorer.best_of(found, self.view)

@@ -28,11 +28,12 @@ class OrderRuleParameters(FastLaneParameters):
     """Parameters of POA rules that choose the order first."""
 
     station: Literal["random", "least-busy", "most-busy"] = "random"
-    """Choice among stations with a free slot: random, or the station with the lowest (`least-busy`)
-    or highest (`most-busy`) share of occupied slots; ties go to the lowest number."""
+    """Which station with a free slot is chosen: a random one (`random`), or the one with the lowest
+    (`least-busy`) or highest (`most-busy`) share of its slots occupied. Ties go to the lowest
+    station number."""
     stick_to_station: bool = False
-    """Whether the last station is chosen again as long as it has a free slot other than the one
-    reserved for the fast lane."""
+    """Whether the station chosen for the previous order is chosen again as long as it has a free
+    slot that is not reserved for the fast lane."""
 
 
 class OrderRule(Filling[OrderRuleParameters]):
@@ -51,7 +52,7 @@ class OrderRule(Filling[OrderRuleParameters]):
         """Choose an order that stock can serve; None if there is none."""
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose an order with `choose_order`, and a station as the parameters require."""
+        """Choose an order with `choose_order`, and a station as the parameters specify."""
         order = self.choose_order()
         if order is None:
             return None
@@ -88,8 +89,8 @@ class RandomOrder(OrderRule):
 class FirstCome(OrderRule):
     """Fills free slots with orders in the sequence of their arrival.
 
-    Orders that stock cannot serve are skipped. Source: rule "Random" of RAWSim-O, which draws
-    only the station at random, and its rule "Default" with first come, first served.
+    Orders that stock cannot serve are skipped. Sources: two rules of RAWSim-O, "Random" (where only
+    the station is random) and "Default" with first come, first served.
     """
 
     def choose_order(self) -> Order | None:
@@ -116,9 +117,10 @@ class WorkParameters(OrderRuleParameters):
     """Parameters of POA rules that compare the time until an order is due with the order's work."""
 
     line_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
-    """Work per order line in seconds, as an estimate of the time until its pod arrives."""
+    """Assumed work per order line in seconds: an estimate of the time until a pod for the line
+    arrives."""
     unit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 10.0
-    """Work per unit in seconds."""
+    """Assumed work per unit of an order in seconds."""
 
 
 class _ByWork(OrderRule):
@@ -189,8 +191,8 @@ class TardinessCostParameters(WorkParameters):
     """Parameters of POA tardiness-cost."""
 
     ahead: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 2.0
-    """Look-ahead of the rule: the slack that reduces the urgency of an order by the factor e, in
-    multiples of the mean work of the orders that can be served."""
+    """Look-ahead of the rule: the slack that reduces the urgency of an order by the factor e. It is
+    given as a multiple of the mean work of the orders that stock can serve."""
 
 
 class TardinessCost(_ByWork):
@@ -200,7 +202,7 @@ class TardinessCost(_ByWork):
     the weight of the order's class, p the order's work (`line_s` per order line plus `unit_s` per
     unit), s its slack (the time until it is due minus p, but at least 0), and m the mean work of
     the orders that stock can serve. Ties go to the order that arrived first. Source: apparent
-    tardiness cost (Vepsalainen, Morton 1987), where `ahead` is 2.
+    tardiness cost (Vepsalainen, Morton 1987), with `ahead` = 2.
     """
 
     parameters_model = TardinessCostParameters
@@ -237,7 +239,10 @@ class FrequencyAge(OrderRule):
         self._frequency = view.trackers.get(Frequency)
 
     def choose_order(self) -> Order | None:
-        """Choose the order with the highest age times frequency; None if stock can serve none."""
+        """Choose, of the orders that stock can serve, the one with the highest age times frequency.
+
+        Return None if stock can serve no order.
+        """
         rows = self.servable_rows()
         if not len(rows):
             return None

@@ -21,17 +21,18 @@ class PairParameters(FastLaneParameters):
     """Parameters of POA rules that score pairs."""
 
     tie_breaker: TieBreaker = "due-time"
-    """Tie-breaker among orders with the same score: earliest due time, earliest arrival, or
-    random."""
+    """Which of several orders with the same score comes first: the one due first (`due-time`), the
+    one that arrived first (`first-come`), or a random one (`random`)."""
 
 
 Q = TypeVar("Q", bound=PairParameters)
 
 
 class BestPair(Filling[Q]):
-    """Assigns the station-order pair that has the highest score, then the next pair, and so on.
+    """Base class of rules that repeatedly assign the pair of station and order that scores highest.
 
-    Ties are broken by the tie-breaker, then by arrival, then by station number.
+    Ties are broken by `tie_breaker`; remaining ties go to the order that arrived first, then to the
+    station with the lowest number.
     """
 
     @abstractmethod
@@ -39,7 +40,7 @@ class BestPair(Filling[Q]):
         """Return the scores (at least 0) of the B backlog orders at S stations, shape (S, B)."""
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the best pair of a servable order and a station."""
+        """Choose the pair with the highest score among the orders that stock can serve."""
         orders = self.view.orders
         servable = orders.servable(self.view.inventory.free_stock)
         if not np.count_nonzero(servable):

@@ -1,4 +1,4 @@
-"""POA picker-load: sends each order to the picker who would complete it first."""
+"""POA picker-load: sends each order to the picker who needs the least time for unpicked units."""
 
 from __future__ import annotations
 
@@ -19,24 +19,25 @@ class PickerLoadParameters(Parameters):
     """Parameters of POA picker-load."""
 
     fatigue_weight: Annotated[float, pydantic.Field(ge=0, le=100)] = 0.0
-    """Each picker's time is multiplied by 1 plus this weight times the picker's fatigue (0 to 1). A
-    high weight, such as 100, keeps orders away from tired pickers while others have free slots."""
+    """Weight of fatigue: the time that a picker needs is multiplied by 1 plus this weight times the
+    picker's fatigue (0 to 1). A high weight, such as 100, keeps orders away from tired pickers as
+    long as others have free slots."""
 
 
 class PickerLoad(Filling[PickerLoadParameters]):
     """Balances work over pickers: slow or tired pickers get fewer units.
 
     Orders are assigned in the sequence of their arrival; those that stock cannot serve are skipped.
-    Each goes to the station whose picker, with the present speed, learning and fatigue, needs the
-    least time for the units still to be picked there, including those of this order. Stations
-    without a picker come last. In scenarios without pickers, the time per unit is the one that the
-    layout gives for the station. Ties go to the station with the lowest number.
+    Each order goes to the station whose picker, at the present speed, learning and fatigue, needs
+    the least time for all units still to be picked there, including those of the new order.
+    Stations without a picker come last. In scenarios without pickers, the time per unit is that of
+    the station in the layout. Ties go to the station with the lowest number.
     """
 
     parameters_model = PickerLoadParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the oldest order that stock can serve, and a station by its picker's time."""
+        """Choose the oldest servable order, and the station whose picker needs the least time."""
         order = self.oldest_order()
         if order is None:
             return None

@@ -1,4 +1,4 @@
-"""POA pod-match: assigns the order with the most units on pods that come to the station anyway."""
+"""POA pod-match: assigns the orders that best match the pods at, or coming to, a station."""
 
 from __future__ import annotations
 
@@ -20,17 +20,19 @@ class PodMatchParameters(PairParameters):
     late_first: bool = False
     """Whether orders that are past their due time come before all others."""
     fast_lane: bool = True
-    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
-    first. Stations with several slots reserve one for the fast lane."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to
+    this station first (fast lane). Stations with several slots reserve one of them for such
+    orders."""
 
 
 class PodMatch(BestPair[PodMatchParameters]):
-    """Matches orders with pods that are coming anyway, for a high pile-on.
+    """Assigns orders that match the pods at a station or on their way to it, for a high pile-on.
 
-    The score of a pair of order and station is the number of the order's units that pods at the
-    station, or on their way there, can supply in addition to what orders at the station still need.
-    The pair with the highest score is assigned, then the next, until no order can be assigned. Ties
-    are broken by the tie-breaker, then by arrival, then by station number.
+    The score of a pair of order and station is the number of units of the order that pods at the
+    station, or on their way to it, can supply. Stock that open orders of the station still need
+    does not count. The pair with the highest score is assigned; this is repeated until no order can
+    be assigned. Ties are broken by `tie_breaker`; remaining ties go to the order that arrived
+    first, then to the station with the lowest number.
     """
 
     parameters_model = PodMatchParameters

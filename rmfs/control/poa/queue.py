@@ -40,34 +40,42 @@ class QueueParameters(Parameters):
 
     queue_length: Annotated[int, pydantic.Field(ge=1)] = 20
     """Maximum number of orders in the pool of each station. Orders in a pool are not available to
-    other stations, so all pools together should hold clearly fewer orders than the backlog."""
+    other stations, so the number of orders in all pools together should be clearly smaller than the
+    backlog."""
     queue_criteria: Criteria = (InboundMatches(), Related(), DueTime())
-    """Criteria, in order of priority, for choosing which order joins which pool next."""
+    """Criteria, in order of priority, for choosing which order joins the pool of which station
+    next."""
     station_criteria: Criteria = (DueSoon(), Completable(), Completable(by="all-pods"))
-    """Criteria, in order of priority, for choosing which order of its pool a station takes next."""
+    """Criteria, in order of priority, for choosing which order of a station's pool gets a slot
+    next."""
     fast_lane: bool = True
-    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
-    first. Stations with several slots reserve one for the fast lane."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to
+    this station first (fast lane). Stations with several slots reserve one of them for such
+    orders."""
     fast_lane_criteria: Criteria = (Size(), DueTime(), FirstCome())
-    """Criteria, in order of priority, for choosing among orders for the fast lane."""
+    """Criteria, in order of priority, for choosing which order takes the fast lane if there are
+    several."""
 
 
 class Queue(PickOrderAssignment[QueueParameters]):
     """Assigns orders in two stages: first to the pool of a station, later to one of its slots.
 
     1. Pools are filled with orders that stock can serve, one at a time: of all pairs of an order
-    and a station, the best by `queue_criteria` is chosen. Pods may be fetched for the orders of a
-    pool, and their units bound to these pods, before the orders have a slot.
-    2. Fast lane: at each station with a free slot and a pod at the head of its queue, orders that
-    this pod completes get a slot: first those of the station's pool, then those in no pool.
-    3. The stations that have a free slot (besides one reserved for the fast lane) take turns: each
-    takes an order of its pool that stock can serve, until no station can take another.
+    and a station, the best by `queue_criteria` is chosen. Even before the orders of a pool have
+    slots, pods may be fetched for them, and the units that they need may be bound to these pods.
+    2. If there is a fast lane, each station with a free slot assigns it to an order that the pod at
+    the head of the station's queue completes. Orders of the station's pool come before orders in no
+    pool. This is repeated until there is no such order, or no free slot.
+    3. Stations with a free slot that is not reserved for the fast lane take turns. In each turn, a
+    station assigns a slot to an order of its pool that stock can serve. This ends when no station
+    can assign another order.
 
-    These steps are repeated until nothing changes. Only active stations have a pool. Units that
-    a station's present orders need do not count as available for further orders. The parameters
-    give the criteria by which orders are chosen; remaining ties go to the order that arrived first,
-    then to the station with the lowest number. The rule is also called whenever a pod reaches the
-    head of a queue, so that the orders for which the pod was fetched can get slots.
+    These steps are repeated until nothing changes. Only active stations have a pool. Units that the
+    open orders of a station need do not count as available for further orders. Orders are chosen by
+    the criteria in the parameters, which `rmfs.control.poa.criteria` describes. Remaining ties go
+    to the order that arrived first, then to the station with the lowest number. In addition to the
+    events after which every POA rule is called, the rule is called whenever a pod reaches the head
+    of a queue, so that the orders for which the pod was fetched can get slots.
     """
 
     parameters_model = QueueParameters

@@ -1,4 +1,4 @@
-"""POA related: sends each order to the station whose orders have most SKUs in common with it."""
+"""POA related: sends an order to the station whose orders share the most SKUs with the order."""
 
 from __future__ import annotations
 
@@ -16,22 +16,24 @@ class RelatedParameters(Parameters):
     """Parameters of POA related."""
 
     tie_breaker: Literal["least-busy", "most-busy", "random"] = "least-busy"
-    """Tie-breaker among stations with equally many SKUs in common: fewest (`least-busy`) or most
-    (`most-busy`) open orders, or random."""
+    """Which station is chosen if the open orders of several stations have equally many lines for
+    SKUs of the order: the one with the fewest (`least-busy`) or most (`most-busy`) open orders, or
+    a random one (`random`)."""
 
 
 class Related(Filling[RelatedParameters]):
-    """Groups orders for the same SKUs, so that one pod serves several orders.
+    """Groups orders for the same SKUs at a station, so that one pod serves several orders.
 
     Orders are assigned in the sequence of their arrival; those that stock cannot serve are skipped.
-    Each goes to the station whose open orders have the most lines, picked or not, for SKUs of the
-    order to be assigned. Ties are broken by the tie-breaker, then by station number.
+    Each order goes to the station whose open orders have the most lines, picked or not, for SKUs of
+    this order. Ties are broken by `tie_breaker`; remaining ties go to the station with the lowest
+    number.
     """
 
     parameters_model = RelatedParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the oldest order that stock can serve, and a station by SKUs in common."""
+        """Choose the oldest servable order, and the station whose orders share the most SKUs."""
         order = self.oldest_order()
         if order is None:
             return None

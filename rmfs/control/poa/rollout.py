@@ -1,4 +1,4 @@
-"""POA rollout: makes the base rule's decision, or one that did better in simulated trials."""
+"""POA rollout: makes the base rule's decision, or another that did better in simulated trials."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
-    """Tries out orders and stations by simulation before it assigns an order.
+    """Tries out several assignments by simulation before it assigns an order.
 
     The base rule makes a default decision. This decision and the best other pairs of order and
     station (by `rmfs.control.features.RANKINGS`) are tried in copies of the run, in which the base
@@ -40,7 +40,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
         self.hears = self.base.hears  # type: ignore[misc]
 
     def decide(self) -> Iterator[Any]:
-        """Yield the base rule's decision, or ask which decision is best."""
+        """Yield the base rule's decision or, if there are others, ask which one is best."""
         while not self.in_flight:
             first = next(iter(self.base.decide()), None)
             if first is None:
@@ -52,7 +52,10 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
                 yield first
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best decision if still valid; if the answer took time, decide again."""
+        """Yield the best decision if it is still valid.
+
+        If simulated time has passed since the question was asked, go on with `decide`.
+        """
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide()

@@ -23,16 +23,16 @@ def first_row(
     tie_breaker: TieBreaker,
     draw: Callable[[int], int],
 ) -> int:
-    """Choose one of the given rows of the backlog by a tie-breaker.
+    """Return the one of the given rows of the backlog that the tie-breaker prefers.
 
-    If due times are equal, the order that arrived first is chosen.
+    If the tie-breaker is `due-time` and due times are equal, the order that arrived first wins.
 
     Parameters
     ----------
     rows
-        At least one row.
+        Rows of the tied orders in `orders`, at least one.
     draw
-        Function that draws an integer below its argument.
+        Function that draws an integer from 0 to its argument minus 1.
     """
     if len(rows) == 1:
         return int(rows[0])

@@ -1,4 +1,4 @@
-"""POA wave: assigns orders by due time and, if due together, by how well they match the pods."""
+"""POA wave: assigns orders by due time; orders due together, by how well they match the pods."""
 
 from __future__ import annotations
 
@@ -20,24 +20,26 @@ class WaveParameters(PairParameters):
     """Parameters of POA wave."""
 
     wave_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Orders due within this many seconds after the first one belong to its wave. With 0, these are
-    only the orders due at the same time, as for one truck."""
+    """Length of a wave in seconds: the wave consists of the orders that are due at most this long
+    after the first of them. With 0, all orders of a wave are due at the same time."""
     missed_last: bool = False
-    """Whether orders past their due time, whose truck has left, come last. Otherwise they belong to
-    the first wave."""
+    """Whether orders that are past their due time, because their truck has left, come last. If
+    false, they belong to the first wave."""
     fast_lane: bool = True
-    """Whether there is a fast lane: orders that the pod at the station can complete are assigned
-    first. Stations with several slots reserve one for the fast lane."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to
+    this station first (fast lane). Stations with several slots reserve one of them for such
+    orders."""
 
 
 class Wave(BestPair[WaveParameters]):
-    """Fills free slots wave by wave, and within a wave by pod match.
+    """Fills free slots wave by wave; within a wave, orders that match the pods best come first.
 
-    A wave consists of the orders that are due together, as for one truck. The rule takes the first
-    wave with an order that stock can serve, and assigns its orders as POA `pod-match` does: the
-    pair of order and station for which pods at the station, or on their way there, can supply the
-    most units comes first. When no order of the wave can be assigned any more, the next wave
-    begins. Ties are broken by the tie-breaker, then by arrival, then by station number.
+    A wave consists of the orders that are due together (`wave_s`), as for one truck. The rule
+    starts with the earliest wave that has an order which stock can serve. Within the wave, it
+    assigns orders as POA `pod-match` does: the pair of order and station for which pods at the
+    station, or on their way to it, can supply the most units comes first. When no further order of
+    the wave can be assigned, the next wave begins. Ties are broken by `tie_breaker`; remaining ties
+    go to the order that arrived first, then to the station with the lowest number.
     """
 
     parameters_model = WaveParameters

@@ -21,7 +21,7 @@ class WorkloadParameters(Parameters):
 
 
 class Workload(Filling[WorkloadParameters]):
-    """Balances open orders over the stations, or fills one station after another.
+    """Balances open orders over the stations or, with `most-busy`, fills one station after another.
 
     Orders are assigned in the sequence of their arrival; those that stock cannot serve are skipped.
     Ties between stations are broken at random.
@@ -30,7 +30,7 @@ class Workload(Filling[WorkloadParameters]):
     parameters_model = WorkloadParameters
 
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
-        """Choose the oldest order that stock can serve, and a station by its open orders."""
+        """Choose the oldest servable order, and a station by the number of open orders."""
         order = self.oldest_order()
         if order is None:
             return None

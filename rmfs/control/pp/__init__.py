@@ -1,4 +1,4 @@
-"""Path planning (PP): selection of a planner, which runs in the traffic core or in Python."""
+"""Path planning (PP): selection of a planner that runs in the traffic core or in Python."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class RollingParameters(Parameters):
 
 
 class PathPlanningInPython(PathPlanning[P]):
-    """Base class of planners written in Python, which see the traffic but not orders or stock."""
+    """Base class of planners written in Python; such a planner does not see orders or stock."""
 
     planner = "python"
 
@@ -61,12 +61,12 @@ class PathPlanningInPython(PathPlanning[P]):
 
 
 def planner_settings(choice: Choice, seed: int, layout: Layout | None = None) -> PlannerSettings:
-    """Convert a choice of controller into settings of the traffic core.
+    """Convert the controller chosen for PP into settings of the traffic core.
 
     Parameters
     ----------
     choice
-        Controller chosen for PP, and its parameters.
+        The controller and its parameters.
     seed
         Seed of the planner's random decisions, such as where a robot moves to resolve a deadlock.
     layout
@@ -75,7 +75,7 @@ def planner_settings(choice: Choice, seed: int, layout: Layout | None = None) ->
     Raises
     ------
     InputError
-        If the file of guidance is invalid or belongs to another layout.
+        If the guidance file is invalid or belongs to another layout.
     """
     controller = choice.controller
     assert issubclass(controller, PathPlanning)

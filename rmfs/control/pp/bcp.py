@@ -17,7 +17,7 @@ class BcpParameters(RollingParameters):
 
 
 class Bcp(PathPlanning[BcpParameters]):
-    """BCP: plans quickest paths; conflicts make waypoints costlier.
+    """BCP: plans the quickest paths and resolves conflicts by making waypoints costlier.
 
     If two paths conflict, the waypoint of the conflict becomes costlier for one of the two robots,
     and a new path is planned for this robot.

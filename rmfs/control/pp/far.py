@@ -19,7 +19,7 @@ class FarParameters(Parameters):
     """Whether a robot that must evade takes another path. Otherwise it moves to a random free
     waypoint next to it."""
     patience_s: float = pydantic.Field(30.0, ge=0)
-    """Time, in seconds, after which a robot that stands still evades, whatever blocks it."""
+    """Time, in seconds, after which a robot that stands still evades in any case."""
     wait_s: float = pydantic.Field(2.0, gt=0)
     """Time, in seconds, for which a robot waits when it is blocked or has evaded."""
     avoid_evading_back: bool = True
@@ -27,10 +27,10 @@ class FarParameters(Parameters):
 
 
 class Far(PathPlanning[FarParameters]):
-    """FAR: moves robots along the free part of their next straight run.
+    """FAR: moves each robot along the free part of its next straight run.
 
-    A robot evades if it is blocked for long, or if it is in a cycle of robots that wait for each
-    other.
+    A robot evades (takes another path or moves to a neighbouring waypoint) if it is blocked for
+    long, or if it is in a cycle of robots that wait for each other.
     """
 
     parameters_model = FarParameters

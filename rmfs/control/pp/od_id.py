@@ -25,7 +25,7 @@ class OdIdParameters(RollingParameters):
 
 
 class OdId(PathPlanning[OdIdParameters]):
-    """OD&ID: robots with conflicting paths form a group that is planned jointly, move by move."""
+    """OD&ID: plans robots with conflicting paths jointly, as a group, one move at a time."""
 
     parameters_model = OdIdParameters
     planner = "od-id"

@@ -21,7 +21,7 @@ class PibtParameters(RollingParameters):
 
 
 class Pibt(PathPlanning[PibtParameters]):
-    """PIBT: chooses each robot's next straight run; robots in the way move aside if they can."""
+    """PIBT: chooses each robot's next straight run; robots that block it move aside if possible."""
 
     parameters_model = PibtParameters
     planner = "pibt"

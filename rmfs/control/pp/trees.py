@@ -1,4 +1,4 @@
-"""PP CBS and PBS, tree searches that resolve conflicts between paths."""
+"""PP CBS (conflict-based search) and PBS (priority-based search), two tree searches."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class PbsParameters(TreeParameters):
 
 
 class Cbs(PathPlanning[TreeParameters]):
-    """CBS (conflict-based search): of two conflicting robots, one gives way.
+    """CBS (conflict-based search): if the paths of two robots conflict, one of them gives way.
 
-    A search tree branches on which of the two gives way; its most promising node is examined first.
-    Paths are planned up to the destinations, without a horizon.
+    The search tree has a branch for each choice of the robot that gives way; the most promising
+    node of the tree is examined first. Paths are planned up to the destinations, without a horizon.
     """
 
     parameters_model = TreeParameters
@@ -35,10 +35,10 @@ class Cbs(PathPlanning[TreeParameters]):
 
 
 class Pbs(PathPlanning[PbsParameters]):
-    """PBS (priority-based search): of two conflicting robots, one plans around the other.
+    """PBS (priority-based search): if the paths of two robots conflict, one plans around the other.
 
-    A depth-first search tries out which of the two does so, the cheaper choice first. Only
-    conflicts within a rolling horizon are resolved.
+    A depth-first search tries both choices of the robot that plans around the other, the cheaper
+    choice first. Only conflicts within a rolling horizon are resolved.
     """
 
     parameters_model = PbsParameters

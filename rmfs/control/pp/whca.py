@@ -20,8 +20,8 @@ class WhcaVolatileParameters(WhcaParameters):
     """Parameters of the volatile variant."""
 
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """Unit of waiting time, in seconds: a robot of higher priority waits for a multiple of it until
-    others have made room."""
+    """Unit of waiting time, in seconds: a robot of higher priority waits for a multiple of this
+    time until others have made room."""
     rounds: int = pydantic.Field(10, ge=1)
     """Maximum number of planning rounds per call; after the last round, robots without a path
     wait."""
@@ -30,10 +30,10 @@ class WhcaVolatileParameters(WhcaParameters):
 
 
 class WhcaVolatile(PathPlanning[WhcaVolatileParameters]):
-    """WHCA*v: plans all robots anew in every call.
+    """WHCA*v (volatile): plans new paths for all robots in every call.
 
-    If no path is found for a robot, its priority rises, and all robots are planned again in a new
-    round.
+    If no path is found for a robot, its priority rises, and new paths are planned for all robots in
+    another round.
     """
 
     parameters_model = WhcaVolatileParameters
@@ -41,7 +41,7 @@ class WhcaVolatile(PathPlanning[WhcaVolatileParameters]):
 
 
 class WhcaPersistent(PathPlanning[WhcaParameters]):
-    """WHCA*n: plans only robots that need a path, around the existing reservations of others."""
+    """WHCA*n: plans only for robots that need a path, around the reservations of other robots."""
 
     parameters_model = WhcaParameters
     planner = "whca-n"

@@ -31,7 +31,10 @@ _REACH: dict[Requests, int] = {
 
 
 class LateBinding(Parameters):
-    """Parameters of every PPS rule. Pools of stations are filled only by POA `queue`."""
+    """Parameters of all PPS rules.
+
+    Some values refer to the pools of stations; of the POA rules, only `queue` fills them.
+    """
 
     late_picks: bool = True
     """Whether units of new orders are bound to a pod that is already on its way to their
@@ -64,15 +67,16 @@ class PodSelection(Controller[P]):
 
     TA asks which pod a robot should fetch and bring to a station, or to which station a carried pod
     should go next. The simulation then binds requests (units that orders need) to the pod: as many
-    as it can serve there.
+    as the pod can serve at the station.
     """
 
     problem = Problem.PPS
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Yield questions to an optimiser.
+        """Yield questions to an optimiser; the base class yields none.
 
-        Called only after the events in `subscriptions`, and at the times given by `next_event_s`.
+        This method is called only after the events in `subscriptions` and at the times given by
+        `next_event_s`.
         """
         return iter(())
 
@@ -89,10 +93,10 @@ class PodSelection(Controller[P]):
         """Choose one of the given stations, all of which the robot's pod can serve."""
 
     def serves(self, pod: int, station: int) -> bool:
-        """Return whether a pod has work at a pick or replenishment station.
+        """Return whether a pod has work at a station.
 
-        At stations of other kinds it has none. The parameter `consider` determines which orders
-        count.
+        A pod has work only at pick and replenishment stations. At a pick station, the parameter
+        `consider` determines which orders count.
         """
         view = self.view
         target = view.all_stations[station]
@@ -105,7 +109,10 @@ class PodSelection(Controller[P]):
         return any(self._completes(pod, order) for order in self._queued(pod, target))
 
     def _queued(self, pod: int, station: PickStation) -> Sequence[Order]:
-        """Queued orders that matter: none without a free slot, or for a pod that is there."""
+        """Return the orders in a station's pool that count.
+
+        There are none if the station has no free slot or the pod is already at the station.
+        """
         if self.parameters.consider == "assigned" or not station.free_slots:
             return ()
         carrier = self.view.storage.claimed_by[pod]
@@ -114,7 +121,10 @@ class PodSelection(Controller[P]):
         return [order for order in station.queued.values() if order.open_units]
 
     def _completes(self, pod: int, order: Order) -> bool:
-        """Whether a pod has all, or by `consider` some, of what an order still wants."""
+        """Return whether a pod has all units that an order still needs.
+
+        If `consider` is `assigned-and-queued`, one such unit is enough.
+        """
         available = self.view.inventory.available.item
         lines = (line for line in order.lines if line.open_units)
         if self.parameters.consider == "assigned-and-queued":

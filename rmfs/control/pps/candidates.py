@@ -53,9 +53,10 @@ class Candidates:
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """Return 0 to 2 for each pod: 1 if the robot is on another tier, plus 1 if the station is.
+        """Return how many of the two, robot and station, are on another tier than each pod.
 
-        The shape is (C,); but if the warehouse has a single tier, the result is the number 0.
+        The values are 0, 1 or 2, and the shape is (C,). If the warehouse has a single tier, the
+        result is the number 0 instead of an array.
         """
         travel = self.view.travel
         if travel.tiers == 1:
@@ -74,7 +75,7 @@ class Completed(NamedTuple):
     orders
         The O orders with open requests; those assigned to the station come first.
     assigned
-        How many of `orders` are assigned to the station; the others are queued there.
+        How many of `orders` are assigned to the station; the others are in its pool (queued).
     flags
         Whether an order is completed by a pod (`PickCandidates.completed`), shape (O, C).
     """
@@ -91,7 +92,7 @@ class Completed(NamedTuple):
         weights
             Weight of each of the O orders.
         queued
-            Whether only queued orders are counted; otherwise, only assigned orders are.
+            Whether to count the queued orders instead of the assigned orders.
         """
         part = slice(self.assigned, None) if queued else slice(self.assigned)
         # a sum over rows, in their order: repeats on every machine
@@ -111,7 +112,7 @@ class PickCandidates(Candidates):
     have
         Available units of each SKU on each candidate, shape (S, C).
     queued
-        The queued orders whose requests count.
+        The orders in the station's pool (queued orders) whose requests count.
     requests
         Which orders' requests count (`rmfs.control.pps.Requests`).
     """
@@ -161,7 +162,8 @@ class PickCandidates(Candidates):
         """Return how many open requests of queued orders each pod can serve, shape (C,).
 
         If `requests` is `assigned-and-completable`, only the queued orders that the pod completes
-        count (see `completed`). Otherwise, queued orders get what assigned orders leave on the pod.
+        count (see `completed`). Otherwise, queued orders get the units that assigned orders leave
+        on the pod.
         """
         if self.requests == "assigned-and-completable":
             done = self.completed()
@@ -174,11 +176,12 @@ class PickCandidates(Candidates):
         return served
 
     def completed(self) -> Completed:
-        """Return which orders each pod completes: those all of whose open requests it can serve.
+        """Return which orders each pod completes, serving all of their open requests.
 
-        Assigned orders are considered in the sequence of their assignment, then queued ones in the
-        sequence in which they were queued. An order takes its units from the pod only if the pod
-        has all of them left. Orders without open requests do not count.
+        Assigned orders are considered in the sequence of their assignment, then queued orders in
+        the sequence in which they joined the pool. An order takes units from the pod only if the
+        pod has all units left that the order still needs. Orders without open requests do not
+        count.
         """
         if self._completed is None:
             self._completed = self._find_completed()
@@ -203,8 +206,8 @@ def pick_candidates(
     Parameters
     ----------
     requests
-        Which orders' requests count. Queued orders never count while the station has no free slot,
-        because a pod might be brought in vain.
+        Which orders' requests count. Queued orders do not count if the station has no free slot,
+        because the pod might arrive before a slot is free.
     """
     skus = list(station.requests.lines)
     queued: list[Order] = []

@@ -43,7 +43,7 @@ class PodCriterion(Parameters):
 
 
 class RandomCriterion(PodCriterion):
-    """Prefers a random pod; by default, pods on the robot's or the station's tier come first."""
+    """Prefers a random pod; by default, pods on the tier of robot and station come first."""
 
     criterion: Literal["random"] = "random"
     prefer_same_tier: bool = True
@@ -53,7 +53,7 @@ class RandomCriterion(PodCriterion):
         """Return scores drawn uniformly from [0, 1).
 
         If `prefer_same_tier` is set, the score of a pod is reduced by 1 if the robot is on another
-        tier, and by 1 if the station is.
+        tier, and by 1 if the station is on another tier.
         """
         scores: Scores = rng.random(len(candidates))
         return scores - candidates.other_tiers() if self.prefer_same_tier else scores
@@ -116,7 +116,7 @@ class Fill(PodCriterion):
 
 
 class PickDemand(PodCriterion):
-    """Prefers the pod with the most units in demand for orders at any station or in the backlog."""
+    """Prefers the pod with the most units that orders at stations or in the backlog still need."""
 
     criterion: Literal["demand"] = "demand"
 
@@ -125,7 +125,7 @@ class PickDemand(PodCriterion):
         view.trackers.get(DemandOnPods, "unbound")
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Return the sum over SKUs of min(units on the pod, open requests for the SKU)."""
+        """Return for each pod the sum over SKUs of min(units on the pod, open requests)."""
         units = candidates.view.trackers.get(DemandOnPods, "unbound").units()
         scores: Scores = units[candidates.pods]
         return scores
@@ -139,7 +139,7 @@ class Completeable(PodCriterion):
     """Whether queued orders count as well."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Return the number of orders whose open requests the pod serves entirely."""
+        """Return the number of orders that each pod completes, serving all open requests."""
         done = candidates.completed()
         flags = done.flags if self.queued else done.flags[: done.assigned]
         scores: Scores = flags.sum(axis=0)
@@ -182,7 +182,7 @@ class PickWorkAmount(PodCriterion):
         """Return the value of the requests that the pod can serve, minus the cost of travel time.
 
         If `prefer_same_tier` is set, the score of a pod is reduced if the robot is on another tier,
-        and again if the station is.
+        and once more if the station is on another tier.
         """
         scores = self._work(candidates)
         if self.time_cost:
@@ -209,7 +209,7 @@ class PickWorkAmount(PodCriterion):
     def _queued_work(
         self, candidates: PickCandidates, value: dict[int, float], worth: list[float]
     ) -> Scores:
-        """Worth of the requests of queued orders, boost included, before its weight."""
+        """Return the value of queued orders' requests, with the boost but not the weight."""
         done = candidates.completed()
         completed = done.weighed(worth, queued=True)
         boost = self.completable_boost * self.boost_queued
@@ -233,7 +233,7 @@ class WaveWork(PodCriterion):
 
     criterion: Literal["wave"] = "wave"
     wave_s: NotNegative = 0.0
-    """Orders due within this many seconds after the next due order belong to its wave."""
+    """Orders due within this many seconds after the order that is due next belong to its wave."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
         """Return the number of units that the pod has for assigned orders of the first wave."""
@@ -259,7 +259,7 @@ class BundleWorkAmount(PodCriterion):
         """Return the number of bundles waiting for the pod, or their total waiting time in s.
 
         If `prefer_same_tier` is set, the score of a pod is reduced if the robot is on another tier,
-        and again if the station is.
+        and once more if the station is on another tier.
         """
         view = candidates.view
         station = candidates.station.number
@@ -279,12 +279,15 @@ class BundleWorkAmount(PodCriterion):
 
 
 class BundleDemand(PodCriterion):
-    """Prefers the pod whose bundles waiting at the station are most in demand."""
+    """Prefers the pod for which the bundles that wait at the station are most in demand."""
 
     criterion: Literal["demand"] = "demand"
 
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
-        """Return the sum over the waiting bundles of min(units, open requests for their SKU)."""
+        """Return for each pod the sum of min(units, open requests) over the bundles waiting for it.
+
+        For each bundle, the open requests for its SKU are those of all orders.
+        """
         view = candidates.view
         station = candidates.station.number
         waiting = view.replenishment_stations[station].waiting
@@ -300,7 +303,10 @@ class BundleDemand(PodCriterion):
 def _valued(
     candidates: PickCandidates, value: dict[int, float], queued: bool = False
 ) -> NDArray[np.float64]:
-    """Worth of what each pod can serve, the most valuable requests for a SKU first, shape (C,)."""
+    """Return the total value of the requests that each pod can serve, shape (C,).
+
+    Of the requests for a SKU, the most valuable are served first.
+    """
     station = candidates.pick_station
     pool = station.queued_requests if queued else station.requests
     need = candidates.view.need[station.index]
@@ -321,7 +327,7 @@ def _valued(
 def _seconds(
     candidates: Candidates, estimate_pod: bool, estimate_station: bool
 ) -> NDArray[np.float64]:
-    """Time to reach each pod, and from there to the station, each estimated or exact, (C,)."""
+    """Return the travel time in s to each pod and from there to the station, shape (C,)."""
     travel = candidates.view.travel
     pods = candidates.waypoints()
     robot, station = travel.robot_waypoint(candidates.robot.index), candidates.station.waypoint

@@ -1,4 +1,4 @@
-"""PPS lexicographic: applies criteria in order of priority; each breaks the ties left before."""
+"""PPS lexicographic: applies criteria by priority; each breaks the ties that earlier ones left."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""PPS network: chooses the pod, or station, that a network scores highest."""
+"""PPS network: chooses the pod, or station, that a neural network scores highest."""
 
 from __future__ import annotations
 
@@ -45,10 +45,11 @@ class NetworkParameters(ScoringParameters, LateBinding):
 
 
 class NetworkRule(PodSelection[NetworkParameters]):
-    """Chooses the pod, or the next station, with the highest score.
+    """Chooses the pod, or the next station, that a neural network scores highest.
 
-    No pod is chosen if declining has a higher score. Regardless of `consider`, pods are chosen for
-    orders assigned to the station, and for orders in its pool that the pod completes.
+    The network also scores the option to choose no pod (declining). No pod is chosen if this score
+    is higher than that of every pod. Regardless of `consider`, pods are chosen for orders assigned
+    to the station, and for orders in its pool that the pod completes.
     """
 
     parameters_model = NetworkParameters

@@ -1,4 +1,4 @@
-"""PPS random: draws a pod with work at the station."""
+"""PPS random: draws one of the pods with work at the station."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class RandomPodParameters(LateBinding):
 
 
 class RandomPod(PodSelection[RandomPodParameters]):
-    """Draws one of the pods with work at the station; also draws a carried pod's next station."""
+    """Draws one of the pods with work at the station, or the next station of a carried pod."""
 
     parameters_model = RandomPodParameters
 

@@ -1,4 +1,4 @@
-"""The value of serving an order's requests, as PPS rules see it."""
+"""The value that PPS rules give to the requests of an order."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool
     ----------
     metric
         `picks`: the value is 1. `age`: the seconds since the order was assigned (if it is only in
-        a station's pool: since it was put there), divided by the number of its open requests.
-        `lateness`: the seconds since its due time, negative before, divided by the number of its
-        open requests; after the due time, also multiplied by the weight of the order's class.
+        a station's pool: since it joined the pool), divided by the number of its open requests.
+        `lateness`: the seconds since the order was due (negative if it is not due yet), divided by
+        the number of its open requests; if late, also multiplied by the weight of the order's
+        class.
     positive
-        Whether lateness is 0 instead of negative before the due time.
+        Whether the value for `lateness` is 0 instead of negative before the due time.
     """
     if metric == "picks":
         return 1.0

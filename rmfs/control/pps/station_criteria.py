@@ -84,7 +84,10 @@ class MostWork(Parameters):
         return len(bundles)
 
     def _picks(self, view: View, pod: int, station: PickStation) -> float:
-        """Worth of the requests served, the most valuable ones for a SKU first."""
+        """Return the total value of the requests that the pod can serve.
+
+        Of the requests for a SKU, the most valuable are served first.
+        """
         total = 0.0
         for sku, waiting in station.requests.lines.items():
             left = view.inventory.available.item(sku, pod)

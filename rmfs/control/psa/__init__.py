@@ -31,9 +31,10 @@ class PodStorageAssignment(Controller[P]):
     problem = Problem.PSA
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Yield questions to an optimiser.
+        """Yield questions to an optimiser; the base class yields none.
 
-        Called only after the events in `subscriptions`, and at the times given by `next_event_s`.
+        This method is called only after the events in `subscriptions` and at the times given by
+        `next_event_s`.
         """
         return iter(())
 
@@ -42,12 +43,15 @@ class PodStorageAssignment(Controller[P]):
         """Choose an empty storage location (waypoint) for a robot's pod; -1 if there is none."""
 
     def least(self, costs: NDArray[np.float64], among: NDArray[np.bool_]) -> int:
-        """Find the storage location with the least finite cost; ties: lowest waypoint number.
+        """Find the storage location with the least finite cost.
+
+        Ties go to the location with the lowest waypoint number.
 
         Parameters
         ----------
         costs, among
-            Cost of each of the L storage locations, and whether it may be chosen, shape (L,).
+            Cost of each of the L storage locations, and whether the location may be chosen; each of
+            shape (L,).
 
         Returns
         -------

@@ -28,18 +28,17 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
     """Stores useful pods in the cache of the nearest pick station, and other pods outside caches.
 
     A cache consists of storage locations near a pick station (`rmfs.control.trackers.zones`). The
-    pick station considered is the one nearest to the pod by Euclidean distance, even if the pod
-    comes from a replenishment station. Two shares decide whether the pod deserves a place in this
-    station's cache: the share of the cache that is free, and the share of the pods in the cache
-    that have a lower score than this pod. The weighted mean of the two shares must be above a
-    threshold. The score of a pod is the weighted mean of its utility and speed
-    (`rmfs.control.trackers.pod_scores`).
+    rule considers the cache of the pick station that is nearest to the pod by Euclidean distance,
+    even if the pod comes from a replenishment station. The pod deserves a place in this cache if
+    the weighted mean of two shares is above a threshold: the share of the cache that is free, and
+    the share of the pods in the cache that have a lower score than this pod. The score of a pod is
+    the weighted mean of its utility and speed (`rmfs.control.trackers.pod_scores`).
 
-    A pod that deserves a place is stored in that cache; if it is full, outside all caches; if all
-    locations outside are occupied, too, in another cache. Any other pod is stored outside all
-    caches or, if all locations outside are occupied, in any cache. Among the empty storage
-    locations of the area chosen, the one nearest to the station is taken; ties go to the waypoint
-    with the lowest number.
+    The pod is stored in the first area that has an empty storage location. If the pod deserves a
+    place in the cache, the areas are this cache, the locations outside all caches, and the other
+    caches, in this order. If it does not, they are the locations outside all caches, and then all
+    caches. Within the area, the empty location nearest to the pick station is chosen; ties go to
+    the waypoint with the lowest number.
     """
 
     parameters_model = CachePlaceParameters

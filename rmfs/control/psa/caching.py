@@ -46,7 +46,8 @@ class Caching:
     zones
         The zones of all storage locations.
     cache_at
-        Pick station to whose cache each of the N waypoints belongs, -1 for none, shape (N,).
+        For each of the N waypoints, the pick station to whose cache the waypoint belongs, or -1;
+        shape (N,).
     """
 
     def __init__(self, view: View, parameters: CacheParameters) -> None:

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 class Fixed(PodStorageAssignment[NoParameters]):
     """Stores every pod at the storage location where it stood at the start of the run.
 
-    If that location is occupied, the pod is stored at the nearest empty one by travel time. The
-    location can be occupied by a pod that another rule (repositioning, or a PSA rule installed
-    earlier) has stored there, or by a robot that rests there because there is no pod to rest
-    beneath.
+    If that location is occupied, the pod is stored at the empty location with the least travel time
+    from the robot. The pod's own location can be occupied by another pod, stored there by another
+    rule (repositioning, or a PSA rule installed earlier), or by a robot that rests there because
+    there is no pod to rest beneath.
     """
 
     def __init__(self, parameters: NoParameters, view: View, rng: np.random.Generator) -> None:
@@ -30,7 +30,7 @@ class Fixed(PodStorageAssignment[NoParameters]):
         self._distances = PlaceDistances(view, "time")
 
     def place(self, robot: Robot) -> int:
-        """Return the pod's own storage location, or else the nearest empty one."""
+        """Return the pod's own storage location if it is empty, and else the nearest empty one."""
         storage = self.view.storage
         own = self._own[robot.pod]
         if storage.is_empty[storage.place_index[own]]:

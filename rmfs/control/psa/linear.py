@@ -32,7 +32,8 @@ class LinearParameters(Parameters):
 class Linear(PodStorageAssignment[LinearParameters]):
     """Chooses the empty storage location with the greatest weighted sum of features.
 
-    Ties go to the waypoint with the lowest number.
+    The features describe a location (`rmfs.control.features`); they include travel times. Ties go
+    to the waypoint with the lowest number.
     """
 
     parameters_model = LinearParameters

@@ -1,4 +1,4 @@
-"""PSA nearest: chooses the empty storage location nearest to the pod."""
+"""PSA nearest: chooses the empty storage location nearest to the robot with the pod."""
 
 from __future__ import annotations
 

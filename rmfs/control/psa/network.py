@@ -1,4 +1,4 @@
-"""PSA network: chooses the storage location that a network scores highest."""
+"""PSA network: chooses the storage location with the highest score of a neural network."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class NetworkParameters(ScoringParameters):
 
 
 class NetworkRule(PodStorageAssignment[NetworkParameters]):
-    """Chooses the empty storage location with the highest score.
+    """Chooses the empty storage location to which a neural network gives the highest score.
 
-    None is chosen if declining has a higher score; the robot then keeps its pod until TA decides
-    again.
+    The network can also score declining, that is, choosing no location. If declining has the
+    highest score, the robot keeps its pod until TA decides again.
     """
 
     parameters_model = NetworkParameters
@@ -45,7 +45,7 @@ class NetworkRule(PodStorageAssignment[NetworkParameters]):
         self._scorer = Scorer("place", parameters.network, parameters.candidates)
 
     def place(self, robot: Robot) -> int:
-        """Choose the storage location with the highest score; -1 for none."""
+        """Choose the storage location with the highest score; -1 if none is empty or chosen."""
         found = candidates_for(self.view, Question(Problem.PSA, "place", robot.index))
         row = self._scorer.best_of(found, self.view)
         return int(found[row]) if row >= 0 else -1

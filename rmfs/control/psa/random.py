@@ -1,4 +1,4 @@
-"""PSA random: draws an empty storage location."""
+"""PSA random: chooses an empty storage location at random."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ class RandomPlaceParameters(Parameters):
 
 
 class RandomPlace(PodStorageAssignment[RandomPlaceParameters]):
-    """Draws an empty storage location."""
+    """Chooses an empty storage location at random."""
 
     parameters_model = RandomPlaceParameters
 
     def place(self, robot: Robot) -> int:
-        """Draw an empty storage location, on the robot's tier if preferred and possible."""
+        """Choose an empty storage location at random; -1 if there is none.
+
+        With `prefer_same_tier`, the location is on the robot's tier if possible.
+        """
         storage = self.view.storage
         places = storage.places[storage.is_empty]
         if self.parameters.prefer_same_tier and self.view.travel.tiers > 1:

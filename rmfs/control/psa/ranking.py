@@ -1,7 +1,7 @@
 """Ranking of pods and places: the higher a pod's score, the more prominent its place.
 
-Places are storage locations; a place is prominent if a pick station is near
-(`rmfs.control.trackers.prominence`).
+Places are storage locations. The shorter the travel time from a place to the nearest pick station,
+the more prominent the place (`rmfs.control.trackers.prominence`).
 """
 
 from __future__ import annotations
@@ -54,10 +54,11 @@ class Ranking:
     """Ranks pods by score, and finds places of the corresponding rank.
 
     The P pods are sorted by score, the highest first (ties by number), and the places by
-    prominence, the most prominent first; positions are counted from 0. The pod at position r
-    belongs on the place at position floor(r x (P + b) / P), or on the last place if that position
-    does not exist. Here b is `place_buffer` times the number of places, rounded down. The rank of
-    this place is the pod's target rank; places of equal prominence share a rank.
+    prominence, the most prominent first. Positions in both orders are counted from 0. The target
+    place of the pod at position r is the place at position floor(r x (P + b) / P), where b is
+    `place_buffer` times the number of places, rounded down. If there is no such position, the
+    target place is the last place. The rank of the target place is the pod's target rank; places of
+    equal prominence share a rank.
     """
 
     def __init__(self, view: View, parameters: RankParameters) -> None:
@@ -90,11 +91,12 @@ class Ranking:
         return targets
 
     def seen(self, target: int) -> NDArray[np.bool_]:
-        """Return which empty places the search from a target rank finds, shape (L,).
+        """Return whether each of the L places is empty and found from a target rank, shape (L,).
 
-        Ranks are searched outward from the target, the next better before the next worse. The
-        search ends when an empty place has been found and at least `corridor` ranks have been
-        searched; ranks beyond the first or the last count, too.
+        The search begins with the target rank and goes outward: the next better rank, the next
+        worse, and so on. It ends when at least `corridor` ranks have been searched and an empty
+        place has been found. Ranks that do not exist, beyond the best or the worst, count as
+        searched.
         """
         away = self.prominence.rank - target
         look = 2 * np.abs(away) - (away < 0)

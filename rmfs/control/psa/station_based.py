@@ -27,9 +27,10 @@ class StationBasedParameters(Parameters):
 
 
 class StationBased(PodStorageAssignment[StationBasedParameters]):
-    """Chooses the empty storage location nearest to a pick (or replenishment) station.
+    """Chooses the empty storage location nearest to any pick station.
 
-    The position of the pod has no effect. Ties go to the waypoint with the lowest number.
+    With `stations` = "replenishment", replenishment stations are considered instead. The position
+    of the pod has no effect. Ties go to the waypoint with the lowest number.
     """
 
     parameters_model = StationBasedParameters

@@ -32,9 +32,11 @@ class TurnoverPlaceParameters(TurnoverParameters):
 class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):
     """Chooses an empty storage location of the pod's turnover class, or else of another class.
 
-    If that class has no empty location, other classes are tried: one class slower, one faster, two
-    slower, two faster, and so on. The parameter `within_class` determines the choice within a
-    class; ties go to the waypoint with the lowest number.
+    Pods and storage locations are divided into classes from fast to slow
+    (`rmfs.control.trackers.turnover`). If the pod's class has no empty location, other classes are
+    tried: one class slower, one faster, two slower, two faster, and so on. The parameter
+    `within_class` determines the choice within a class; ties go to the waypoint with the lowest
+    number.
     """
 
     parameters_model = TurnoverPlaceParameters

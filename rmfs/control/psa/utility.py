@@ -16,14 +16,17 @@ if TYPE_CHECKING:
 
 
 class Utility(PodStorageAssignment[RankParameters]):
-    """Ranks pods by score and places by prominence, and chooses a place whose rank suits the pod.
+    """Chooses an empty storage location with a rank near the pod's target rank.
 
-    The score of a pod is the weighted mean of its utility (the number of its units that orders
-    need) and its speed (how often its SKUs are ordered). Places are storage locations; the most
-    prominent one is nearest to a pick station. A pod's target rank is the rank of the place that
-    corresponds to the pod's position in the order of scores. Ranks are searched for empty places,
-    outward from the target rank. Of the empty places found, the one with the least travel time from
-    the robot is chosen; ties go to the lowest waypoint number.
+    Storage locations are ranked by prominence: the shorter the travel time to the nearest pick
+    station, the better the rank. Pods are sorted by score, the weighted mean of a pod's utility
+    (the number of its units that orders need) and its speed (how often its SKUs are ordered). A
+    pod's target rank is the rank of the location that corresponds to the pod's position in this
+    order (`rmfs.control.psa.ranking.Ranking`).
+
+    Empty locations are sought rank by rank, outward from the target rank, until at least one is
+    found and at least `corridor` ranks have been searched. Of the locations found, the one with the
+    least travel time from the robot is chosen; ties go to the lowest waypoint number.
     """
 
     parameters_model = RankParameters

@@ -23,7 +23,7 @@ Seconds = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 
 
 class Move(NamedTuple):
-    """The move of an available stored pod to an empty storage location (`place`, a waypoint)."""
+    """A move of an available pod to an empty storage location (`place`, a waypoint)."""
 
     pod: int
     place: int
@@ -65,9 +65,9 @@ P = TypeVar("P", bound=Parameters)
 class Repositioning(Controller[P]):
     """Chooses an available pod, and the empty storage location to which it is moved.
 
-    TA asks for a move on behalf of a robot without a pod, usually one that would otherwise rest.
-    Pod and location are reserved immediately: for an idle robot that stands beneath the pod or, if
-    there is none, for the robot on whose behalf TA asked.
+    TA asks for a move on behalf of a robot without a pod, usually one that would otherwise rest. If
+    another idle robot stands beneath the chosen pod, that robot makes the move instead. The pod and
+    the location are reserved immediately for the robot that makes the move.
     """
 
     problem = Problem.REPOSITIONING
@@ -94,8 +94,8 @@ class Pausing(Repositioning[Q]):
 
     During a pause, the rule does not search for moves. The pause after a move applies only to the
     robot on whose behalf TA asked; the pause after an unsuccessful search applies to all robots.
-    When a pause ends that followed an unsuccessful search or prevented a search, TA is asked for
-    decisions again.
+    A pause that followed an unsuccessful search, or that has prevented a search, triggers TA when
+    it ends.
     """
 
     def __init__(self, parameters: Q, view: View, rng: np.random.Generator) -> None:
@@ -106,10 +106,10 @@ class Pausing(Repositioning[Q]):
 
     @abstractmethod
     def find(self, robot: Robot) -> Move | None:
-        """Search for the best move; None if there is none."""
+        """Find the best move; None if there is none."""
 
     def move(self, robot: Robot) -> Move | None:
-        """Search for the best move, and begin the pause that follows."""
+        """Return the best move, or None if there is none, and begin the pause that follows."""
         now_s = self.view.now_s
         found = self.find(robot)
         if found is not None:
@@ -128,7 +128,7 @@ class Pausing(Repositioning[Q]):
         return False
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s when TA is asked again because a pause ends, or inf."""
+        """Return the simulated time, in s, at which the end of a pause triggers TA; inf if none."""
         if self._again_s <= self.view.now_s:
             self._again_s = inf
         return self._again_s

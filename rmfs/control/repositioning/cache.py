@@ -56,26 +56,35 @@ class _Pairs(NamedTuple):
 class Cache(Pausing[CacheMoveParameters]):
     """Keeps a given number of storage locations free in the cache of each pick station.
 
-    The cache of a pick station consists of storage locations near it. There may also be drop-off
-    zones (`drop_off_places`): the storage locations that robots reach fastest from the pick
-    stations.
+    The cache of a pick station consists of storage locations near the station. If
+    `drop_off_places` is positive, each pick station also has a drop-off zone: the storage locations
+    that robots reach fastest from the station.
 
-    If a cache has more free locations than it should, a pod from outside all caches is moved in.
-    Pod and cache are chosen by the following criteria, each of which breaks the ties left by those
-    before: the pod is on the robot's tier; it can serve the most units that orders at the station
-    of the cache need; it holds the most units in demand (see `count_backlog`); it is the fullest;
-    its move is the shortest, compared for at most 32 pairs of pod and cache.
+    If caches have more free locations than the given number, a pod from outside all caches is moved
+    into one of them. The pair of pod and cache is chosen by the following criteria; each criterion
+    breaks the ties left by the previous ones:
 
-    If a cache has fewer free locations than it should, one of its pods is moved out. The criteria
-    are: it is on the robot's tier; it can serve the fewest units that orders at the station of its
-    cache need; it holds the fewest units in demand; it is the emptiest; it is the nearest to a pick
-    station. The pod goes to the nearest storage location outside all caches and drop-off zones or,
-    if it is almost empty (`empty_below`), to the one of these locations that is nearest to a
+    1. The pod is on the robot's tier.
+    2. The pod can supply the most units that orders at the station of the cache need.
+    3. The pod holds the most units in demand (see `count_backlog`).
+    4. The pod is the fullest.
+    5. The move is the shortest. At most 32 pairs are compared by this criterion.
+
+    If there is no such move, a pod is moved out of a cache that has fewer free locations than the
+    given number. The pod is chosen by the following criteria:
+
+    1. The pod is on the robot's tier.
+    2. The pod can supply the fewest units that orders at the station of its cache need.
+    3. The pod holds the fewest units in demand.
+    4. The pod is the emptiest.
+    5. The pod is the nearest to a pick station.
+
+    The pod goes to the nearest storage location outside all caches and drop-off zones. But if the
+    pod is almost empty (`empty_below`), it goes to the one of these locations that is nearest to a
     replenishment station.
 
-    Moves into a cache come before moves out of a cache. Lengths of moves are Manhattan distances;
-    distances to a station are travel times. Remaining ties go to the pod with the lowest number,
-    then to the waypoint with the lowest number.
+    Lengths of moves are Manhattan distances; distances to a station are travel times. Remaining
+    ties go to the pod with the lowest number, then to the waypoint with the lowest number.
     """
 
     parameters_model = CacheMoveParameters
@@ -97,7 +106,7 @@ class Cache(Pausing[CacheMoveParameters]):
             np.minimum(self._to_replenishment, to, out=self._to_replenishment)
 
     def find(self, robot: Robot) -> Move | None:
-        """Search for a pod to move into a cache or, if there is none, for one to move out."""
+        """Find a pod to move into a cache or, if there is none, a pod to move out of a cache."""
         free = self._zones.cache_size - self._zones.occupied()
         wanted = np.minimum(self.parameters.free_places, self._zones.cache_size)
         pods = self.view.storage.is_at_hand.nonzero()[0]
@@ -122,7 +131,7 @@ class Cache(Pausing[CacheMoveParameters]):
         return min(moves)[-1]
 
     def _into(self, pod: np.intp, station: np.intp) -> tuple[float, int, Move]:
-        """Length of the shortest move into a cache (it has a free place), pod, and the move."""
+        """Length in m of a pod's shortest move into a cache with a free place; pod; the move."""
         view = self.view
         among = view.storage.is_empty & (self._zones.cache_of == station)
         place = nearest_place(view, int(pod), among, "manhattan")
@@ -155,7 +164,7 @@ class Cache(Pausing[CacheMoveParameters]):
         return Move(pod, nearest_place(self.view, pod, empty, "manhattan"))
 
     def _on_tier(self, robot: Robot, pods: NDArray[np.intp]) -> NDArray[np.intp]:
-        """Leave out pods on other tiers, if there are any on the robot's."""
+        """Keep only the pods on the robot's tier or, if there are none, all pods."""
         travel = self.view.travel
         if travel.tiers == 1:
             return pods
@@ -163,7 +172,7 @@ class Cache(Pausing[CacheMoveParameters]):
         return near if len(near) else pods
 
     def _picks(self, station: int, pods: NDArray[np.intp]) -> NDArray[np.int64]:
-        """Open requests of a station that each pod can serve, shape (n,)."""
+        """Number of open requests of a station that each of the n pods can serve, shape (n,)."""
         units = np.zeros(len(pods), np.int64)
         need, available = self.view.need[station], self.view.inventory.available
         for sku in self.view.pick_stations[station].requests.lines:
@@ -171,7 +180,7 @@ class Cache(Pausing[CacheMoveParameters]):
         return units
 
     def _fill(self, pods: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Share of their capacity in use, shape (n,)."""
+        """Share of capacity in use of each of the n pods, shape (n,)."""
         inventory = self.view.inventory
         share: NDArray[np.float64] = inventory.used[pods] / inventory.capacity[pods]
         return share

@@ -1,4 +1,4 @@
-"""Repositioning cache-drop-off: clears the drop-off zones, and keeps caches filled to a level."""
+"""Repositioning cache-drop-off: clears drop-off zones, and fills caches to a target level."""
 
 from __future__ import annotations
 
@@ -31,25 +31,28 @@ class CacheDropOffParameters(CacheParameters, Pauses):
 
 
 class CacheDropOff(Pausing[CacheDropOffParameters]):
-    """Clears drop-off zones, then fills or thins out the caches.
+    """Clears drop-off zones, then moves pods into or out of caches to reach a target fill.
 
     The drop-off zone of a pick station consists of the storage locations that robots reach fastest
-    from it; its cache consists of other storage locations near it. PSA `cache` explains the score
-    of a pod, and when a pod deserves a place in a cache.
+    from the station. The cache of the station consists of other storage locations near it. The
+    score of a pod, and the condition on which it deserves a place in a cache, are those of PSA
+    `cache`.
 
-    Stations are considered in order of the absolute difference between the actual and the target
-    number (see `target_fill`) of occupied storage locations in their cache, the largest difference
-    first. If the drop-off zone of a station holds pods, the one with the highest score is moved:
-    into the cache of the station if the pod deserves a place there and there is room, and otherwise
-    outside all caches and drop-off zones.
+    For each station, the actual number of occupied storage locations in its cache is compared with
+    the target number (`target_fill`). The stations are considered in order of the absolute
+    difference of the two numbers, the largest first. If the drop-off zone of the station contains
+    pods, the pod with the highest score is moved. It goes into the cache of the station if it
+    deserves a place there and the cache has room; otherwise, it goes outside all caches and
+    drop-off zones.
 
-    If no pod in a drop-off zone can be moved, the caches are considered, in the same order. If a
-    cache has too few pods, the pod with the highest score of those outside all caches and drop-off
-    zones is moved in, provided that it deserves a place. If a cache has too many, its pod with the
-    lowest score is moved outside all caches and drop-off zones.
+    If no pod in a drop-off zone can be moved, the caches are considered in the same order. If a
+    cache has too few pods, the candidate is the pod with the highest score outside all caches and
+    drop-off zones; it is moved in if it deserves a place. If a cache has too many pods, the pod
+    with the lowest score in the cache is moved outside all caches and drop-off zones.
 
-    Nothing is moved into a drop-off zone. A pod goes to the nearest empty storage location of the
-    area to which it is moved. Ties go to the lowest number.
+    No pod is moved into a drop-off zone. A pod goes to the nearest empty storage location of the
+    area to which it is moved. Ties between pods or stations go to the lowest number, and ties
+    between storage locations to the lowest waypoint number.
     """
 
     parameters_model = CacheDropOffParameters
@@ -67,7 +70,7 @@ class CacheDropOff(Pausing[CacheDropOffParameters]):
         self._drop_off_at[places] = self._zones.drop_off_of
 
     def find(self, robot: Robot) -> Move | None:
-        """Search for a pod in a drop-off zone, then for a cache with too few or too many pods."""
+        """Find a move that clears a drop-off zone or, if there is none, that levels a cache."""
         storage = self.view.storage
         pods = storage.is_at_hand.nonzero()[0]
         if self.parameters.same_tier:
@@ -99,7 +102,7 @@ class CacheDropOff(Pausing[CacheDropOffParameters]):
     def _level(
         self, station: int, short: int, pods: NDArray[np.intp], scores: NDArray[np.float64]
     ) -> Move | None:
-        """Move a pod into a cache that is short of pods, or out of one that has too many."""
+        """Move a pod into a cache with too few pods, or out of a cache with too many."""
         at = self.view.storage.pod_waypoint[pods]
         if short > 0:
             stored = pods[(self._caching.cache_at[at] < 0) & (self._drop_off_at[at] < 0)]
@@ -124,5 +127,5 @@ class CacheDropOff(Pausing[CacheDropOffParameters]):
 
 
 def _best(pods: NDArray[np.intp], scores: NDArray[np.float64]) -> int:
-    """The pod with the highest score, of equals the one with the lowest number."""
+    """Return the pod with the highest score; ties go to the pod with the lowest number."""
     return int(pods[scores[pods].argmax()])

@@ -1,4 +1,4 @@
-"""Repositioning utility: moves the pod whose place is farthest from the pod's target rank."""
+"""Repositioning utility: moves the pod that is farthest from its target rank."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rmfs.world.robots import Robot
 
 _TRIES = 8
-"""Maximum number of pods for which a better place is searched at a time."""
+"""Maximum number of pods for which a better place is sought in one search."""
 
 
 class UtilityParameters(RankParameters, Pauses):
@@ -25,14 +25,15 @@ class UtilityParameters(RankParameters, Pauses):
 
 
 class Utility(Pausing[UtilityParameters]):
-    """Moves the pod for which the rank of its place differs most from the pod's target rank.
+    """Moves the pod for which the rank of its location differs most from its target rank.
 
-    The ranks of places (storage locations), the target ranks of pods, and the search for empty
-    places outward from a pod's target rank are as in PSA `utility`. Of the places found, the one
+    The ranks of storage locations, the target ranks of pods, and the search for empty locations
+    outward from a pod's target rank are as in PSA `utility`. Of the locations found, the one
     nearest to the pod by Manhattan distance is chosen; ties go to the waypoint with the lowest
-    number. The pod is moved only if this reduces the difference of the ranks. Otherwise, the pod
-    with the next largest difference is tried; at most eight pods are tried in one search. If the
-    differences of several pods are equal, the pod with the lowest number comes first.
+    number. The pod is moved only if the move reduces the difference between the two ranks.
+    Otherwise, the pod with the next largest difference is tried; at most eight pods are tried in
+    one search. If several pods have the same difference, the pod with the lowest number comes
+    first.
     """
 
     parameters_model = UtilityParameters
@@ -42,7 +43,7 @@ class Utility(Pausing[UtilityParameters]):
         self._ranking = Ranking(view, parameters)
 
     def find(self, robot: Robot) -> Move | None:
-        """Search for a pod to move, beginning with the one farthest from its target rank."""
+        """Find a move, trying first the pods that are farthest from their target ranks."""
         storage = self.view.storage
         rank_at = np.zeros(self.view.layout.waypoints, np.intp)
         rank_at[storage.places] = self._ranking.prominence.rank

@@ -20,10 +20,9 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentOrderAssignment(Controller[P]):
     """Chooses stations for the bundles of `view.bundles.without_station`.
 
-    Space for a bundle is reserved at its station immediately. `view.bundles.released` contains, by
-    pod, the bundles that RPS has promised to the pod and then released, as long as they have no
-    station. Once a bundle has been released and has a station, TA can let a robot bring the pod to
-    that station.
+    Space for a bundle is reserved at its station immediately. `view.bundles.released` contains, for
+    each pod, the bundles that RPS has released for the pod and that have no station yet. Once a
+    bundle has been released and has a station, TA can let a robot bring the pod to that station.
     """
 
     problem = Problem.ROA

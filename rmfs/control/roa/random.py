@@ -29,9 +29,9 @@ class RandomStationParameters(Parameters):
 class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
     """Sends bundles in order of arrival to random active stations with room.
 
-    By default, the station drawn last is chosen again as long as it is active and has room. The
-    rule does not wait until RPS has chosen a pod for the bundle. A bundle waits if no active
-    station has room for it.
+    By default, the station chosen for the previous bundle is chosen again as long as it is active
+    and has room. The rule does not wait until RPS has chosen a pod for a bundle. A bundle waits if
+    no active station has room for it.
     """
 
     parameters_model = RandomStationParameters
@@ -61,7 +61,7 @@ class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):
     def _station(
         self, bundle: Bundle, stations: list[ReplenishmentStation]
     ) -> ReplenishmentStation | None:
-        """Draw a station with room for a bundle, or take the last one again; None if none has."""
+        """Return the previous station or draw a station with room; None if no station has room."""
         space, last = bundle.space, self._last
         if last is not None and last.active and space <= last.free_space:
             return last

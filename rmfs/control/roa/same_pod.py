@@ -48,17 +48,18 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
 
     A batch consists of the bundles that RPS has released for one pod and that have no station yet.
     If they are sent together, the pod makes only one trip. Batches are considered in the order of
-    their first release. The parameter `station` determines the choice of the station; by default,
-    the one with the shortest straight-line distance from the pod's current position is chosen, even
+    their first release. The parameter `station` determines the choice of the station. By default,
+    it is the station with the shortest straight-line distance from the pod's current position, even
     if the pod is being carried. Ties go to the station with the lowest number.
 
-    An empty station may be chosen even if the batch exceeds its capacity. It then gets as many
-    bundles of the batch as fit.
+    An empty station may be chosen even if its capacity is too small for the batch. The station then
+    gets as many bundles of the batch as fit.
 
-    With `break_batches`, bundles are sent one by one. A bundle goes to the station to which the
-    previous bundle for its pod was sent. If that station has no room or is switched off, the bundle
-    goes to the station with room that is nearest to that one. If there was no previous bundle, the
-    parameter `station` decides. Bundles that fit nowhere wait, without blocking later bundles.
+    With `break_batches`, bundles are sent one by one. The parameter `station` determines the
+    station of the first bundle for a pod. Each further bundle goes to the station of the previous
+    bundle for the same pod. If that station has no room or is switched off, the nearest other
+    station with room is chosen, by its distance from that station. Bundles that fit nowhere wait,
+    without blocking later bundles.
     """
 
     parameters_model = SamePodParameters
@@ -102,7 +103,7 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
         return last if last in stations else self._nearest(last.waypoint, stations)
 
     def _with_room(self, pod: int, space: float, split: bool = False) -> list[ReplenishmentStation]:
-        """Find stations with room for a pod's bundles; an empty one may do for a part of them."""
+        """Find stations with room; with `split`, also empty stations with room for a part only."""
         tier = self.view.travel.tier[self.view.pod_waypoint(pod)]
         return [
             station

@@ -20,10 +20,10 @@ P = TypeVar("P", bound=Parameters)
 class ReplenishmentPodSelection(Controller[P]):
     """Chooses pods for the bundles of `view.bundles.without_pod`.
 
-    Promising a bundle to a pod reserves space for it on the pod immediately. ROA and TA may act on
-    the promise only after the bundle has been released. Until then, the bundle is listed in
-    `view.bundles.unreleased`, and further bundles can be promised to the pod, so that one trip
-    serves all of them.
+    When a bundle is promised to a pod, space for the bundle is reserved on the pod immediately. ROA
+    and TA may act on the promise only after the bundle has been released. Until then, the bundle is
+    listed in `view.bundles.unreleased`, and further bundles can be promised to the pod, so that one
+    trip serves all of them.
     """
 
     problem = Problem.RPS
@@ -33,6 +33,6 @@ class ReplenishmentPodSelection(Controller[P]):
     def decide(self) -> Iterator[PromiseBundle | ReleasePod | SendBundle | Ask[Any] | By[Any]]:
         """Yield promises and releases until there is nothing more to decide now.
 
-        A controller that also decides ROA yields the stations of a pod's bundles after their
-        release.
+        A controller that also decides ROA first releases the bundles of a pod, and then yields the
+        stations to which they are sent.
         """

@@ -30,8 +30,9 @@ class Buffered(ReplenishmentPodSelection[P]):
     """Promises bundles to pods one by one, and releases the bundles of a pod together.
 
     The bundles of a pod are released when enough of the pod's capacity is used or promised
-    (`threshold`), or a certain time after the last promise to the pod (`timeout_s`). The same holds
-    for bundles that were promised, but not released, by another rule that this one has replaced.
+    (`threshold`), or when a certain time has passed since the last promise to the pod
+    (`timeout_s`). If this rule has replaced another rule, bundles that the other rule promised but
+    did not release are treated in the same way.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -44,11 +45,14 @@ class Buffered(ReplenishmentPodSelection[P]):
 
     @abstractmethod
     def threshold(self, pod: int) -> float:
-        """Return the used or promised share of capacity at which a pod's bundles are released."""
+        """Return the share of a pod's capacity at which its promised bundles are released.
+
+        The share includes the capacity that is used and the capacity that is promised.
+        """
 
     @abstractmethod
     def timeout_s(self, pod: int) -> float:
-        """Return the time in s from the last promise to a pod until its bundles are released."""
+        """Return the time, in s, from the last promise to a pod to the release of its bundles."""
 
     @property
     @abstractmethod
@@ -109,14 +113,14 @@ class Buffered(ReplenishmentPodSelection[P]):
         return earliest_s
 
     def _full(self) -> Iterator[ReleasePod]:
-        """Release pods that reach the threshold: another rule may have held them back."""
+        """Release the bundles of pods at the threshold: another rule may have held them back."""
         inventory = self.view.inventory
         for pod in list(self.view.bundles.unreleased_since_s):
             if inventory.load[pod] >= self.threshold(pod) * inventory.capacity[pod]:
                 yield ReleasePod(pod)
 
     def _due(self) -> Iterator[ReleasePod]:
-        """Release the pods whose time is up."""
+        """Release the bundles of pods whose time-out has expired."""
         for pod, time_s in list(self.view.bundles.unreleased_since_s.items()):
             if time_s + self.shortest_timeout_s > self.view.now_s:
                 return
@@ -151,16 +155,16 @@ class EvenlyBuffered(Buffered[B]):
     """Base class of rules with the same threshold and the same time-out for all pods."""
 
     def threshold(self, pod: int) -> float:
-        """Return the threshold (share of capacity) of all pods, `buffer_threshold`."""
+        """Return `buffer_threshold`: the threshold of every pod, as a share of its capacity."""
         return self.parameters.buffer_threshold
 
     def timeout_s(self, pod: int) -> float:
-        """Return the time-out of all pods in s, `buffer_timeout_s`."""
+        """Return `buffer_timeout_s`: the time-out of every pod, in s."""
         return self.parameters.buffer_timeout_s
 
     @property
     def shortest_timeout_s(self) -> float:
-        """The time-out of all pods in s, `buffer_timeout_s`."""
+        """The time-out of every pod, in s (`buffer_timeout_s`)."""
         return self.parameters.buffer_timeout_s
 
 
@@ -189,6 +193,6 @@ class Sticky(EvenlyBuffered[S]):
         """Choose a pod with room for the bundle; -1 if there is none."""
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Stop choosing the same pod again once a replenishment station serves it."""
+        """Stop choosing the same pod if a bundle has been stored in it."""
         if subject.pod == self._last:
             self._last = -1

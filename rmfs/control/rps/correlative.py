@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 class Correlative(EvenlyBuffered[BufferParameters]):
     """Chooses the pod whose SKUs are most often ordered together with the bundle's SKU.
 
-    The score of a pod is a sum over its SKUs: for each of them, the number of orders (also from
-    before the run) that contain both it and the bundle's SKU. All pods with room are candidates,
-    wherever they are. Ties go to the pod with the lowest number.
+    For each SKU of a pod, the orders that contain both this SKU and the bundle's SKU are counted,
+    including orders from before the run. The score of the pod is the sum of these numbers. All pods
+    with room are candidates, wherever they are. Ties go to the pod with the lowest number.
     """
 
     parameters_model = BufferParameters

@@ -33,9 +33,9 @@ class Nearest(Located[BufferParameters]):
     """Chooses the pod nearest, in a straight line, to the station that ROA chose for the bundle.
 
     Stored pods come before carried ones; within each of these groups, pods on the station's tier
-    come first. The distance of a carried pod is that of its robot. Ties go to the pod with the
-    lowest number. The rule requires an ROA rule that does not wait for the choice of the pod, such
-    as `random`.
+    come first. The distance of a carried pod is measured from the waypoint where its robot stands
+    or next stops. Ties go to the pod with the lowest number. The rule requires an ROA rule that
+    does not wait for the choice of the pod, such as `random`.
     """
 
     parameters_model = BufferParameters
@@ -64,17 +64,17 @@ class ReactiveParameters(BufferParameters):
 class Reactive(Located[ReactiveParameters]):
     """Chooses a pod that is easy to bring to the station that ROA chose for the bundle.
 
-    Stored pods on the station's tier come first; then pods that are either carried or on another
-    tier; then pods that are both. Within the first of these groups that has a pod with room, the
-    choice is random or, depending on `among_equals`, the emptiest pod is chosen; ties go to the
-    lowest number. The rule requires an ROA rule that does not wait for the choice of the pod, such
-    as `random`.
+    Pods that are stored on the station's tier come first, then pods that are either carried or on
+    another tier, and then pods that are both. The pod is chosen from the first of these groups in
+    which a pod has room. The parameter `among_equals` determines whether the choice is random or
+    the emptiest pod is chosen; ties go to the lowest number. The rule requires an ROA rule that
+    does not wait for the choice of the pod, such as `random`.
     """
 
     parameters_model = ReactiveParameters
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose among the pods with room; -1 if there is none."""
+        """Choose a pod with room from the group that comes first; -1 if no pod has room."""
         inventory = self.view.inventory
         if self.parameters.among_equals == "random":
             scores = self.rng.random(len(inventory.capacity))
@@ -84,7 +84,7 @@ class Reactive(Located[ReactiveParameters]):
         return self.best(bundle, scores + self._steps(bundle.station))
 
     def _steps(self, station: int) -> NDArray[np.int64]:
-        """1 for each pod that is carried, and 1 if on another tier than a station, shape (P,)."""
+        """Group of each pod: 1 if carried, plus 1 if not on the station's tier, shape (P,)."""
         storage, travel = self.view.storage, self.view.travel
         steps = np.logical_not(storage.is_stored).astype(np.int64)
         if travel.tiers > 1:

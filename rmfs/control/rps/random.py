@@ -1,4 +1,4 @@
-"""RPS random: draws a pod with room."""
+"""RPS random: chooses a pod with room at random."""
 
 from __future__ import annotations
 
@@ -10,20 +10,22 @@ if TYPE_CHECKING:
     from rmfs.world.orders import Bundle
 
 _DRAWS = 16
-"""Number of draws from all pods, before a draw from the pods with room."""
+"""Maximum number of draws from all pods. If none of the pods drawn has room, a pod is drawn from
+those with room."""
 
 
 class RandomPod(Sticky[StickyParameters]):
-    """Draws one of all pods with room for the bundle, wherever they are.
+    """Chooses a random pod with room for the bundle.
 
-    By default, the drawn pod is kept for further bundles until one of them does not fit or a
-    replenishment station serves the pod (`stick_to_pod`).
+    All pods with room are candidates, wherever they are. By default, the chosen pod is kept for
+    further bundles until one of them does not fit or a replenishment station serves the pod
+    (`stick_to_pod`).
     """
 
     parameters_model = StickyParameters
 
     def choose_anew(self, bundle: Bundle) -> int:
-        """Draw a pod with room; -1 if there is none."""
+        """Choose a pod with room at random; -1 if there is none."""
         inventory = self.view.inventory
         pods = len(inventory.capacity)
         for _ in range(_DRAWS):

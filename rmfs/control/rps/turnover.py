@@ -44,13 +44,14 @@ class TurnoverPodParameters(TurnoverParameters):
 class Turnover(Buffered[TurnoverPodParameters]):
     """Chooses a pod of the same turnover class as the bundle's SKU.
 
-    Pods and SKUs are classified by units ordered (`rmfs.control.trackers.turnover`). Together with
-    PSA `turnover`, which stores the fastest pods nearest to pick stations, the rule thus brings
-    fast SKUs close to pickers. If no pod of the class has room, other classes are tried: one class
-    slower, one faster, two slower, two faster, and so on. Within a class, the same pod is chosen
-    until it has no room or a replenishment station serves it. Then the emptiest pod of the class is
-    chosen (ties go to the lowest number) or, if `emptiest` is false, a random one. All pods are
-    candidates, wherever they are.
+    Pods and SKUs are classified by units ordered (`rmfs.control.trackers.turnover`). PSA `turnover`
+    stores the fastest pods nearest to pick stations; together, the two rules bring fast SKUs close
+    to pickers. If no pod of the class has room, other classes are tried: one class slower, one
+    faster, two slower, two faster, and so on. All pods are candidates, wherever they are.
+
+    Within a class, the same pod is chosen until a bundle does not fit or a replenishment station
+    serves the pod. Then the emptiest pod of the class is chosen (ties go to the lowest number) or,
+    if `emptiest` is false, a random pod.
     """
 
     parameters_model = TurnoverPodParameters
@@ -64,7 +65,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
         self._last = [-1] * self._classes.classes
 
     def choose(self, bundle: Bundle) -> int:
-        """Choose a pod of the SKU's class if one has room, else of another; -1 if none has room."""
+        """Choose a pod with room, of the SKU's class if possible; -1 if no pod has room."""
         fits = self.fits(bundle)
         if not fits.any():
             return -1
@@ -93,7 +94,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
         return min(self.parameters.buffer_timeouts_s)
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Stop reusing the pod chosen last in a class once a replenishment station serves it."""
+        """Stop choosing the same pod within its class if a bundle has been stored in it."""
         self._last = [-1 if pod == subject.pod else pod for pod in self._last]
 
     def _among(self, pods: np.ndarray[Any, np.dtype[np.intp]]) -> int:

@@ -27,4 +27,4 @@ class StationActivation(Controller[P]):
 
     @abstractmethod
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield the stations to be switched on or off now."""
+        """Yield a decision for each station that is to be switched on or off now."""

@@ -44,13 +44,21 @@ class BacklogThresholdParameters(Parameters):
 class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
     """Switches stations on when much work waits, and off when the active ones have little work.
 
-    All stations are on at the start. Pick and replenishment stations are considered separately,
-    and a station is switched only if the last switch of a station of the same kind was at least
-    `pause_s` ago. The first pick station that is off is switched on if more than `orders_on` orders
-    are in the backlog, and at least the share `pick_share_off` of the slots of active stations is
-    in use. The last pick station that is on is switched off, unless it is the only one, if at most
-    `orders_on` orders are in the backlog, and less than that share is in use. Otherwise nothing
-    changes. Replenishment stations are switched in the same way, according to `bundles_on`,
+    All stations are on at the start. Pick and replenishment stations are considered separately. A
+    station is switched only if at least `pause_s` seconds have passed since the start and since the
+    last switch of a station of the same kind.
+
+    The backlog of pick stations is long if it contains more than `orders_on` orders. The use of
+    pick stations is low if less than the share `pick_share_off` of the slots of active pick
+    stations is in use.
+
+    - If the backlog is long and the use is not low, the first pick station that is off is switched
+      on.
+    - If the use is low and the backlog is not long, the last pick station that is on is switched
+      off, unless it is the only one.
+    - Otherwise nothing changes.
+
+    Replenishment stations are switched in the same way, according to `bundles_on`,
     `replenishment_share_off` and the space in use; bundles held back by RPS count as backlog.
     Stations are ordered by activation number in the layout, then by number.
     """
@@ -93,7 +101,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
                 yield switch
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s at which a pause ends next; inf if there is no pause."""
+        """Return the simulated time, in s, at which the next pause ends; inf if there is none."""
         return min((at_s for at_s in self._from_s.values() if at_s > self.view.now_s), default=inf)
 
     def _switch(self, pick: bool) -> SwitchStation | None:

@@ -30,16 +30,16 @@ class ConstantRatio(StationActivation[ConstantRatioParameters]):
     """Switches a fixed share of the stations on and the others off, permanently.
 
     Of n stations, m = floor(`active_share` x n) are to be on: p = floor(`pick_share` x m) pick
-    stations and m - p replenishment stations. If one of these two numbers is 0, it is raised to 1;
-    if a kind has fewer stations than its number, all of them are on. Within a kind, the stations
-    with the lowest activation numbers in the layout are on; ties go to the station with the lowest
-    number.
+    stations and m - p replenishment stations. If one of these two numbers is 0, it is raised to 1.
+    If there are fewer stations of a kind than that, all stations of the kind are on. Within a kind,
+    the stations with the lowest activation numbers in the layout are on; ties go to the station
+    with the lowest number.
     """
 
     parameters_model = ConstantRatioParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield a switch for each station that is not in the desired state."""
+        """Yield a decision to switch each station that is not in the desired state."""
         on = self._on()
         for station in self.view.stations:
             if station.active != (station.index in on):

@@ -9,12 +9,14 @@ if TYPE_CHECKING:
 
 
 def activation_order(view: View, pick: bool) -> list[int]:
-    """Return the stations of one kind, by activation number in the layout, then by number.
+    """Return the numbers of the stations of one kind in the order in which they are switched on.
+
+    Stations are sorted by activation number in the layout, then by number.
 
     Parameters
     ----------
     pick
-        Whether pick stations are returned; otherwise replenishment stations.
+        Whether pick stations are returned; if false, replenishment stations.
     """
     layout = view.layout
     if pick:

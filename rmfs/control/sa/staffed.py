@@ -37,18 +37,19 @@ class StaffedParameters(Parameters):
 
 
 class Staffed(StationActivation[StaffedParameters]):
-    """Follows the roster of the scenario, and lets pickers rest when they are too tired.
+    """Switches pick stations on and off by the roster of the scenario and the pickers' fatigue.
 
     A pick station is switched off when its picker leaves or when the picker's fatigue reaches
-    `tired`; a tired picker still finishes open orders. The station is switched on when a picker is
-    there whose fatigue is at most `rested`. If `tired` is 1, fatigue has no effect. Replenishment
-    stations are always on, as are all stations if the scenario has no pickers.
+    `tired`; a tired picker still finishes open orders. The station is switched on when it has a
+    picker and the picker's fatigue is at most `rested`. If `tired` is 1, fatigue has no effect.
+    Replenishment stations are always on. If the scenario has no pickers, all stations are always
+    on.
     """
 
     parameters_model = StaffedParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield a switch for each station that is not in the desired state."""
+        """Yield a decision to switch each station that is not in the desired state."""
         staff = self.view.staff
         for station in self.view.stations:
             on = staff is None or station.index >= len(staff.at_station)
@@ -58,9 +59,10 @@ class Staffed(StationActivation[StaffedParameters]):
                 yield SwitchStation(station.index, active=on)
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s of the next change of pickers or check of fatigue.
+        """Return the simulated time, in s, at which this rule must decide again; inf if never.
 
-        If neither is due, the time is inf.
+        It is the time at which pickers come or leave next, or of the next check of fatigue if that
+        is earlier.
         """
         staff = self.view.staff
         if staff is None:

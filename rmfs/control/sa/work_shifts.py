@@ -17,9 +17,10 @@ if TYPE_CHECKING:
 
 
 class Shift(Parameters):
-    """A period, from `at_s` to the next shift, in which all stations are on, or all are off.
+    """A period in which all stations are on, or all are off.
 
-    All shifts recur in every loop, by default a day (`WorkShiftsParameters.loop_s`).
+    It lasts from `at_s` to the next shift. The sequence of shifts repeats in a loop, by default
+    every day (`WorkShiftsParameters.loop_s`).
     """
 
     at_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
@@ -54,25 +55,25 @@ class WorkShiftsParameters(Parameters):
 class WorkShifts(StationActivation[WorkShiftsParameters]):
     """Switches all stations on or off together, at the same times of every day.
 
-    Instead of the day, the shifts may repeat in a loop of another length (`loop_s`). A run begins
-    at the time of day given by the scenario (`time_of_day_s`), the first loop at time of day 0.
+    Shifts can also repeat in a loop that is not a day long (`loop_s`). The first loop begins at
+    time of day 0. The run begins at the time of day given by the scenario (`time_of_day_s`).
     """
 
     parameters_model = WorkShiftsParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield a switch for each station that is not in the state of the current shift."""
+        """Yield a decision to switch each station that is not in the state of the current shift."""
         on = self._present()[0]
         for station in self.view.stations:
             if station.active != on:
                 yield SwitchStation(station.index, active=on)
 
     def next_event_s(self) -> float:
-        """Return the simulated time in s of the next change of state; inf if there is none."""
+        """Return the simulated time, in s, at which stations are switched next; inf if never."""
         return self._present()[1]
 
     def _present(self) -> tuple[bool, float]:
-        """Whether stations are on now, and at what simulated time that changes."""
+        """Return whether stations are on now, and the simulated time, in s, of the next change."""
         given, gone_s = self.parameters, self.view.time_of_day_s
         now_s = self.view.now_s + gone_s
         states = {shift.on for shift in given.shifts}

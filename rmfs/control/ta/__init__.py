@@ -43,7 +43,7 @@ class Consult(Protocol):
         ...
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask repositioning for a move by a robot without a pod; None if there is no move."""
+        """Ask the repositioning rule for a move by a robot without a pod; None if it has none."""
         ...
 
 
@@ -56,9 +56,10 @@ WORK = frozenset(
 class TaskAllocation(Controller[P]):
     """Gives tasks to robots that need one (`view.asking`) or are at rest (`view.resting`).
 
-    Each decision is applied before `decide` is resumed. If a robot is left without a task, the rule
-    is asked about it again at the next trigger. Robots at rest need not get a task, but should get
-    work as soon as there is any; therefore rules subscribe to the events of `WORK` by default.
+    Each decision is applied before `decide` is resumed. A robot that gets no task stays in
+    `view.asking`, and `decide` is called again at the next trigger. Robots at rest need not get a
+    task, but should get work as soon as there is any; therefore rules subscribe to the events of
+    `WORK` by default.
     """
 
     problem = Problem.TA
@@ -71,8 +72,8 @@ class TaskAllocation(Controller[P]):
     ) -> Iterator[TaskDecision | Prepare | AssignOrder | AssignLines | Ask[Any] | By[Any]]:
         """Yield tasks for robots until there is nothing more to assign now.
 
-        A controller that also decides POA yields assignments of orders, too. Such a controller is
-        asked even if no robot needs a task or is at rest.
+        A controller that also decides POA yields assignments of orders, too. In this case, `decide`
+        is called even if no robot needs a task or is at rest.
         """
 
     @abstractmethod

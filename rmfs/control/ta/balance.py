@@ -1,4 +1,4 @@
-"""How many robots work for each station, and which; for TA rules that assign robots to stations."""
+"""Functions of TA rules that assign robots to stations: numbers per station, and reassignment."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 def split(robots: int, first: float, second: float) -> tuple[int, int]:
     """Divide robots between two groups in proportion to weights; return the number in each group.
 
-    Numbers are rounded down. A robot left over goes to the group with fewer robots or, in a tie, to
-    the first group, but never to a group of weight 0. If both weights are 0, no robot is assigned.
+    Numbers are rounded down. If this leaves one robot over, it goes to the group with fewer robots
+    or, in a tie, to the first group, but never to a group of weight 0. If both weights are 0, both
+    groups are empty.
     """
     total = first + second
     if total <= 0:
@@ -33,10 +34,12 @@ def deal(robots: int, stations: Sequence[int], limit: int, goals: dict[int, int]
 
     Parameters
     ----------
+    robots
+        Number of robots to be assigned.
     stations
-        Stations in the order in which robots are assigned.
+        Stations in the order in which they get robots.
     goals
-        Number of robots of each station, which is increased in place.
+        Number of robots of each station; the function increases these numbers in place.
     """
     while robots > 0:
         before = robots
@@ -64,13 +67,13 @@ def reassign(
     goals
         Number of robots that each station should have; 0 for stations not listed.
     distance
-        Distance between robots and all stations in any unit, shape (R, S).
+        Distance between each robot and each station, in any unit, shape (R, S).
 
     Returns
     -------
     list of int
-        The new station of each robot, or -1. If a station still has more robots than its goal, its
-        excess robots, those with the highest numbers, get -1.
+        The new station of each robot, or -1. If a station still has more robots than its goal, the
+        excess robots (those with the highest numbers) get -1.
     """
     result = list(station_of)
     surplus = {station: -goal for station, goal in goals.items()}

@@ -52,17 +52,16 @@ class Balanced(StationTeams[BalancedParameters]):
     is no work moves an idle pod, if repositioning finds one, or rests.
 
     Every `period_s`, if the set of stations with work has changed, the robots are redistributed.
-    A share of the robots gets no station: `reposition_weight` divided by the sum of the three
-    weights; the number of these robots is rounded down. The others are divided between the two
-    kinds of station in proportion to the weight of each kind times the share of its stations that
-    have work. Within a kind, stations get one robot each in turn, those farthest from the middle of
-    the tier first, up to `robots_per_station`; robots left over go to stations of either kind below
-    that limit. Which robot changes to which station is decided by distance, the nearest pair first.
-    If no station had work at the last redistribution, the next takes place as soon as there is
-    work.
+    The share of robots that get no station is `reposition_weight` divided by the sum of the three
+    weights; their number is rounded down. The others are divided between the two kinds of station
+    in proportion to the weight of each kind times the share of its stations that have work. Within
+    a kind, stations get one robot each in turn, up to `robots_per_station`; the stations farthest
+    from the middle of the tier come first. Robots left over go to stations of either kind that are
+    still below this limit. Robots are reassigned by distance, the nearest pair of robot and station
+    first. If no station had work at the last redistribution, the next one takes place as soon as a
+    station has work.
 
-    A robot takes work of a station only if fewer than `robots_per_station` other robots work for
-    this station.
+    A robot works for a station only if fewer than `robots_per_station` other robots do.
     """
 
     parameters_model = BalancedParameters
@@ -94,7 +93,7 @@ class Balanced(StationTeams[BalancedParameters]):
     def stations_for(self, robot: Robot) -> Sequence[int]:
         """Return the robot's station or, with `search_all`, all stations, nearest first.
 
-        A robot that has no station gets none with `search_all` either.
+        If the robot has no station, the result is empty in both cases.
         """
         own = super().stations_for(robot)
         if not own or not self.parameters.search_all:
@@ -104,9 +103,10 @@ class Balanced(StationTeams[BalancedParameters]):
         return nearest_first
 
     def go_elsewhere(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Return a task for the carried pod at another station nearby, which PPS chooses.
+        """Return the task of bringing the carried pod to a station nearby; PPS chooses the station.
 
-        The result is None without `other_stations`, or if no such station has work for the pod.
+        The result is None if `other_stations` is false, or if no station nearby has work for the
+        pod and may get another robot.
         """
         if not self.parameters.other_stations:
             return None
@@ -117,7 +117,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return self.bring(robot, robot.pod, consult.next_station(robot, stations))
 
     def looks_elsewhere(self) -> bool:
-        """Return whether robots take work of all stations (`search_all`)."""
+        """Return whether robots may work for all stations (`search_all`)."""
         return self.parameters.search_all
 
     def may_be_moved(self, consult: Consult) -> bool:
@@ -127,7 +127,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return moves and consult.may_move()
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Return the task of moving an idle pod; None if not allowed or if there is no move."""
+        """Return the task of moving an idle pod; None if not allowed, or if no move is found."""
         given = self.parameters
         only_moves = given.reposition_weight > 0 and self._station_of[robot.index] < 0
         if not (given.reposition_before_rest or only_moves):
@@ -140,7 +140,7 @@ class Balanced(StationTeams[BalancedParameters]):
         return Reposition(chosen, move.pod, move.place)
 
     def _station_robots(self) -> int:
-        """How many robots work for stations at all."""
+        """Return the number of robots that get a station."""
         given = self.parameters
         weight = given.pick_weight + given.replenishment_weight
         total = weight + given.reposition_weight

@@ -1,4 +1,4 @@
-"""TA brute-force: chooses the pair of pod and station with which service can begin soonest."""
+"""TA brute-force: chooses the pair of pod and station for which service can begin soonest."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class BruteForceParameters(CongestionParameters, SoloParameters):
 
 
 class _Job(NamedTuple):
-    """A pod at a station, and the estimated time until it is there."""
+    """A pair of pod and station, and the estimated time until service begins, in s."""
 
     seconds: float
     station: int
@@ -41,23 +41,28 @@ class _Job(NamedTuple):
 
 
 class BruteForce(Solo[BruteForceParameters]):
-    """Compares all pairs of a pod and a station with work for it, and chooses the quickest.
+    """Chooses the pair of pod and station for which service can begin soonest.
 
-    The pods are the available ones and the one that the robot carries, if any. The pair with the
-    least estimated time until service is chosen. The estimate is the sum of three terms: the time
-    of the straight trip from robot to pod at top speed; the time to lift the pod (and to set
-    down the carried one); and the longer of the unhindered trip to the station and the expected
-    wait there. The delay that congestion is expected to cause on both trips can be added
-    (`congestion`). For the carried pod, only the last term counts. Ties go to the carried pod, then
-    to the station and the pod with the lowest number. All robots look for picks until there are
-    none, then for bundles until there are none, and so on.
+    For each robot, the rule compares all pairs of a pod and a station with work for this pod. The
+    pods are the available ones and the one that the robot carries, if any. The pair with the least
+    estimated time until service is chosen. The estimate is the sum of three terms: the time of a
+    straight trip from robot to pod at top speed; the time to lift the pod (and, if the robot
+    carries another one, to set that down); and either the time of the unhindered trip to the
+    station or the expected wait there, whichever is longer. For the carried pod, only the last term
+    counts. For other pods, the delay that congestion is expected to cause on both trips can be
+    added (`congestion`). Ties go to the carried pod, then to the station and the pod with the
+    lowest number.
+
+    Only one kind of work (picks or bundles) is considered at a time, at first picks. If a search
+    for a robot finds no work of this kind, but work of the other kind, the rule changes to the
+    other kind for all robots.
 
     If the best pod is not the carried one, the robot first parks the carried pod, then fetches the
-    best one. It parks at the empty storage location for which the time to drive there, plus the
-    time of a straight trip from there to the best pod, is least. If another robot has taken the
-    best pod meanwhile, the robot searches again. If there is no work, a carried pod is parked at
-    the nearest empty location. The rule chooses pods and storage locations itself, so PPS and PSA
-    must be `dummy`; bundles go into the pods chosen by RPS.
+    best one. The carried pod is parked at the empty storage location for which the time to drive
+    there, plus the time of a straight trip from there to the best pod, is least. If another robot
+    has taken the best pod meanwhile, the robot searches again. If there is no work, the carried pod
+    is parked at the nearest empty location. The rule chooses pods and storage locations itself, so
+    PPS and PSA must be `dummy`; bundles go into the pods chosen by RPS.
     """
 
     parameters_model = BruteForceParameters
@@ -73,8 +78,8 @@ class BruteForce(Solo[BruteForceParameters]):
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Yield the best task or, if there is no work, the task of parking or resting.
 
-        If the robot carries a pod other than the best one, yield the parking of the carried pod,
-        then `Prepare` with the best task.
+        If the robot carries a pod other than the best one, yield the task of parking the carried
+        pod, then a `Prepare` with the best task.
         """
         view = self.view
         job = self._best(robot, consult)
@@ -104,12 +109,12 @@ class BruteForce(Solo[BruteForceParameters]):
         return bring(self.view, robot, job.pod, job.station)
 
     def _park(self, robot: Robot, on_s: NDArray[np.float64]) -> Iterator[Park]:
-        """Park where the time there and the time from there on add up to least.
+        """Park where the time to drive to the place plus `on_s` is least.
 
         Parameters
         ----------
         on_s
-            Time on from each place, shape (L,).
+            Time from each place to the next destination, in s, shape (L,).
         """
         storage = self.view.storage
         there = self.view.travel.away(robot.waypoint, loaded=True)[storage.places]
@@ -129,7 +134,7 @@ class BruteForce(Solo[BruteForceParameters]):
         return None
 
     def _to_pods(self, robot: Robot) -> NDArray[np.float64]:
-        """Time until the robot has lifted each stored pod, shape (P,)."""
+        """Estimate the time in s until the robot has lifted each stored pod, shape (P,)."""
         view = self.view
         kind = view.layout.robot_kinds[view.layout.robot_kind[robot.index]]
         where = view.travel.robot_waypoint(robot.index)

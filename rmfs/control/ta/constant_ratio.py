@@ -21,11 +21,11 @@ class ConstantRatioParameters(TeamParameters):
 class ConstantRatio(StationTeams[ConstantRatioParameters]):
     """Assigns a fixed share of robots to pick stations, the others to replenishment stations.
 
-    Only stations that are active or have work left get robots. Within a kind, they get one robot
-    each in turn, those farthest from the middle of the tier first. Every `period_s`, if the set of
-    stations that are active or have work left has changed, robots are reassigned, the nearest pair
-    of robot and station first. Every robot works only for its station, and continues with its pod
-    as long as the pod has work there.
+    Only stations that are active or have work left get robots. Within a kind, these stations get
+    one robot each in turn; those farthest from the middle of the tier come first. Every `period_s`,
+    if the set of stations that are active or have work left has changed, robots are reassigned, the
+    nearest pair of robot and station first. Every robot works only for its station, and continues
+    with its pod as long as the pod has work at this station.
     """
 
     parameters_model = ConstantRatioParameters
@@ -37,7 +37,7 @@ class ConstantRatio(StationTeams[ConstantRatioParameters]):
     def stations_now(self) -> frozenset[int]:
         """Return the stations that are active or have work left.
 
-        If there are none, return those among which robots were last divided.
+        If there are none, return the stations to which robots were last assigned.
         """
         found = frozenset(s.index for s in self.view.stations if s.active or s.has_work)
         return found or self._active

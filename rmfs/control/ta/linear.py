@@ -39,9 +39,9 @@ class Linear(Solo[LinearParameters]):
     The task with the greatest weighted sum of features is chosen. PPS, PSA and repositioning choose
     pods and storage locations; if they find none, the next best task is chosen. If another robot
     without work stands beneath the pod to be fetched, that robot gets the task. A robot at rest
-    gets work for a station only if the sum for this work is at least the weight of `rest`. Ties go
-    to work for the station with the lowest number, then to storing, then to moving, then to
-    resting.
+    gets work for a station only if the sum for this work is at least the weight of `rest`. In a
+    tie, work for a station comes first (the station with the lowest number before others), then
+    storing, then moving, then resting.
     """
 
     parameters_model = LinearParameters
@@ -73,7 +73,10 @@ class Linear(Solo[LinearParameters]):
         return None
 
     def _best_first(self, robot: Robot, least: float = -inf) -> list[tuple[int, int]]:
-        """Sort what a robot could do, if it is worth enough: kind of task, and station or -1."""
+        """List a robot's possible tasks, as kind and station (or -1), the greatest sum first.
+
+        Tasks whose sum is below `least` are left out.
+        """
         found = tasks(self.view, robots=[robot])
         worth = scores(found, "ta", self.view, self.parameters.weights)
         order = np.argsort(-worth, kind="stable")[: np.count_nonzero(worth >= least)]

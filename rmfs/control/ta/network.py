@@ -39,12 +39,14 @@ class NetworkParameters(ScoringParameters):
 
 
 class NetworkRule(TaskAllocation[NetworkParameters]):
-    """Gives the robot and task with the highest score to each other, then the next.
+    """Scores pairs of a robot and a task, and assigns the tasks with the highest scores.
 
-    A robot that needs a task may work for a station, store its pod, move an idle pod or rest where
-    it is; a robot at rest may work for a station. PPS, PSA and repositioning choose pods and
-    storage locations; if they find none, the pair is left out. The rule stops when declining has a
-    higher score than every pair.
+    Tasks are assigned one after another: each time, the pair with the highest score is chosen. A
+    robot that needs a task may work for a station, store its pod, move an idle pod or rest where it
+    is; a robot at rest may work for a station, store its pod or move an idle pod. PPS, PSA and
+    repositioning choose pods and storage locations; if they find none, the pair is left out. The
+    network also scores declining, that is, assigning no further task. The rule stops when this
+    score is higher than those of all pairs.
     """
 
     parameters_model = NetworkParameters
@@ -55,7 +57,7 @@ class NetworkRule(TaskAllocation[NetworkParameters]):
         self._rest = RestPlaces(view, parameters.rest, self.draw)
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision]:
-        """Yield tasks until declining is better."""
+        """Yield tasks until declining has the highest score, or no possible task is left."""
         may_move = consult.may_move()
         refused: list[Any] = []
         while may_move or not lacks_tasks(self.view):
@@ -72,11 +74,11 @@ class NetworkRule(TaskAllocation[NetworkParameters]):
                 yield task
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose a waypoint by the parameter `rest`; -1 if there is none."""
+        """Choose the waypoint where a robot rests, by the parameter `rest`; -1 if there is none."""
         return self._rest.choose(robot)
 
     def _whole(self, chosen: Any, consult: Consult) -> TaskDecision | None:
-        """Return the whole task; None if no pod, storage location or move is found for it."""
+        """Return the complete task; None if no pod, storage location or move is found for it."""
         match chosen:
             case WorkFor():
                 return errands.work(chosen, self.view, consult)

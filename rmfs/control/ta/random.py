@@ -1,4 +1,4 @@
-"""TA random: gives robots random pods with work, and random stations."""
+"""TA random: gives robots random pods with work, and random stations for these pods."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class RandomTasks(Solo[RandomTasksParameters]):
         self._picks: list[bool] = (rng.random(len(view.robots)) < share).tolist()
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Draw what to do, and yield the task."""
+        """Draw the robot's next task at random, and yield it."""
         given = self.parameters
         if self._happens(given.switch_probability):
             self._picks[robot.index] = not self._picks[robot.index]
@@ -81,10 +81,11 @@ class RandomTasks(Solo[RandomTasksParameters]):
         yield self.work_for(robot, consult) or self.to_rest(robot)
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Draw an available pod with work, then a station where it has work; None without work.
+        """Draw an available pod with work, then a station where the pod has work.
 
-        The work is of the robot's present kind (picking or replenishment). If there is no such work
-        and `other_kind` is true, it is of the other kind.
+        The result is the task of bringing the pod to the station. Only work of the robot's present
+        kind (picking or replenishment) counts or, if there is none and `other_kind` is true, work
+        of the other kind. Without any such work, the result is None.
         """
         for picks in self._kinds(robot):
             stations = [s.index for s in self._stations(picks) if self.view.has_open_work(s.index)]

@@ -1,4 +1,4 @@
-"""Where idle robots rest: beneath stored pods, so that empty storage locations remain for pods."""
+"""Where idle robots rest: beneath stored pods, so that empty storage locations stay free."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ class RestPlaces:
         possibly on another tier (ties go to the waypoint with the lowest number); `random`: a
         location drawn from those on the robot's tier.
     draw
-        Function that draws an integer from 0 to n - 1, where n is its argument; for `random`.
+        Function that draws an integer from 0 to n - 1, where n is its argument; called only with
+        the rule `random`.
     """
 
     def __init__(self, view: View, rule: RestRule, draw: Callable[[int], int]) -> None:

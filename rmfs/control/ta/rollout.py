@@ -1,4 +1,4 @@
-"""TA rollout: gives robots the tasks of a base rule, or others that did better in trials."""
+"""TA rollout: gives robots the tasks of a base rule, or tasks that did better in trials."""
 
 from __future__ import annotations
 
@@ -64,7 +64,10 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
         return int(self.base.rest_place(robot))
 
     def decide(self, consult: Consult) -> Iterator[Any]:
-        """Yield decisions of the base rule or, where there are alternatives, ask which is best."""
+        """Yield the decisions of the base rule, or a question if a decision has alternatives.
+
+        The question asks which of the alternatives is best.
+        """
         self._consult = consult
         while not self.in_flight:
             for first in self.base.decide(consult):
@@ -77,7 +80,10 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
                 return
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Yield the best task if it is still possible; if the answer took time, decide further."""
+        """Yield the best decision if it is still possible.
+
+        If the answer took simulated time, further decisions follow, as in `decide`.
+        """
         yield from self.best(call)
         if call.completed_us > call.requested_us:
             yield from self.decide(self._consult)

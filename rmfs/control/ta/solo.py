@@ -37,7 +37,7 @@ P = TypeVar("P", bound=SoloParameters)
 
 
 class Solo(TaskAllocation[P]):
-    """Finds tasks robot by robot.
+    """Finds tasks for one robot after another.
 
     If no work is found for a robot at rest, there is no further search for any robot at rest until
     work is added or a pod becomes available.
@@ -50,11 +50,11 @@ class Solo(TaskAllocation[P]):
 
     @abstractmethod
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield a task for a robot that needs one, optionally followed by `Prepare`."""
+        """Yield a task for a robot that needs one; a `Prepare` with later tasks may follow."""
 
     @abstractmethod
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find work for a robot at rest; None if there is none."""
+        """Return a task for a robot at rest; None if there is no work for it."""
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Yield a task for every robot that needs one, and work for robots at rest."""
@@ -78,22 +78,22 @@ class Solo(TaskAllocation[P]):
                     yield found
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose a waypoint by the parameter `rest`; -1 if there is none."""
+        """Choose the waypoint where a robot rests, by the parameter `rest`; -1 if there is none."""
         return self._rest.choose(robot)
 
     def to_rest(self, robot: Robot) -> Rest:
-        """Return the task of resting where `rest_place` says or, if it returns -1, on the spot."""
+        """Return the task of resting, at `rest_place` or, if that is -1, where the robot stands."""
         place = self.rest_place(robot)
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def park(self, robot: Robot, consult: Consult) -> Iterator[Park]:
-        """Yield the task of storing a robot's pod where PSA chooses, if a location is empty."""
+        """Yield the task of storing a robot's pod where PSA chooses; none if PSA finds no place."""
         place = consult.place_for(robot)
         if place >= 0:
             yield Park(robot, place)
 
     def pods_for(self, robot: Robot, station: int) -> NDArray[np.intp]:
-        """Return the available pods with work at a station, in ascending order, shape (C,).
+        """Return the numbers of the C available pods with work at a station, ascending, shape (C,).
 
         For pick stations, only the orders assigned to the station count, not those in its pool.
         """

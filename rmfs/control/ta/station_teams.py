@@ -40,7 +40,7 @@ P = TypeVar("P", bound=TeamParameters)
 
 
 class StationTeams(TaskAllocation[P]):
-    """Assigns each robot to a station and gives it work of this station.
+    """Assigns each robot to a station and gives it work for this station.
 
     A robot continues with the pod it carries as long as the pod can serve the robot's station, and
     then parks the pod. A robot without a pod brings the pod that PPS chooses. If another robot
@@ -49,9 +49,9 @@ class StationTeams(TaskAllocation[P]):
 
     Every `period_s`, if the result of `stations_now` has changed, robots are reassigned to meet
     `goals`: a station with too few robots gets robots that have no station or whose station has too
-    many, the nearest pair of robot and station first. After an empty result of `stations_now`,
-    reassignment does not wait for the end of the period: it takes place as soon as a station should
-    have robots.
+    many, the nearest pair of robot and station first. If `stations_now` returned no station the
+    last time, reassignment does not wait for the end of the period: it takes place as soon as a
+    station should have robots.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
@@ -85,7 +85,7 @@ class StationTeams(TaskAllocation[P]):
         return frozenset(range(len(self.view.stations)))
 
     def may_work(self, robot: Robot, station: int) -> bool:
-        """Return whether a robot may get work of a station now."""
+        """Return whether a robot may now get work for a station."""
         return station >= 0
 
     def stations_for(self, robot: Robot) -> Sequence[int]:
@@ -106,7 +106,7 @@ class StationTeams(TaskAllocation[P]):
         return True
 
     def looks_elsewhere(self) -> bool:
-        """Return whether `stations_for` may return other stations than a robot's own."""
+        """Return whether `stations_for` may return stations other than the robot's own."""
         return True
 
     # --- tasks ----------------------------------------------------------------------------------
@@ -132,7 +132,7 @@ class StationTeams(TaskAllocation[P]):
         yield from self._wake(consult)
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose a storage location for a robot to rest at, by `rest`; -1 if none is suitable."""
+        """Choose the waypoint where a robot rests, by the parameter `rest`; -1 if there is none."""
         return self._rest.choose(robot)
 
     def _next_task(self, robot: Robot, consult: Consult) -> TaskDecision | None:
@@ -145,7 +145,7 @@ class StationTeams(TaskAllocation[P]):
         )
 
     def _go_on(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Use a pod that has been served again, or park it."""
+        """Find further work for a carried pod, or park it."""
         for station in self.stations_for(robot):
             if self.may_work(robot, station) and consult.serves(robot.pod, station):
                 return self.bring(robot, robot.pod, station)
@@ -156,7 +156,10 @@ class StationTeams(TaskAllocation[P]):
         return Park(robot, place) if place >= 0 else None
 
     def _fetch(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find a pod for an empty robot, unless nothing has changed since none was found."""
+        """Find a pod for a robot without one.
+
+        A station for which no pod was found is searched again only after its work has changed.
+        """
         for station in self.stations_for(robot):
             if not self.may_work(robot, station) or not self.view.has_open_work(station):
                 continue
@@ -170,7 +173,7 @@ class StationTeams(TaskAllocation[P]):
         return None
 
     def _send(self, robot: Robot, pod: int, station: int) -> TaskDecision:
-        """Let a robot, or the one beneath the pod, bring it."""
+        """Let a robot bring a pod, or the robot beneath the pod if there is one."""
         chosen = keeper_of(self.view, robot, pod)
         if chosen is not robot:
             stations = self._station_of
@@ -184,7 +187,7 @@ class StationTeams(TaskAllocation[P]):
         return bring(self.view, robot, pod, station)
 
     def count(self, robot: Robot, station: int) -> None:
-        """Count a robot, from now on, as working for a station (-1: for no station)."""
+        """From now on, count a robot as working for a station (-1: for no station)."""
         former = self._works_for[robot.index]
         if former >= 0:
             self._workers[former] -= 1
@@ -202,10 +205,10 @@ class StationTeams(TaskAllocation[P]):
         return Rest(robot, place if place >= 0 else robot.waypoint)
 
     def _wake(self, consult: Consult) -> Iterator[TaskDecision]:
-        """Give work to robots at rest whose station has some that is new.
+        """Give work to robots at rest if their station has new work.
 
-        Most stations have none: looking at these first, and not at each robot, is what keeps this
-        cheap in big fleets.
+        Most stations have no new work. Examining the stations first, instead of each robot, is fast
+        in large fleets.
         """
         resting = self.view.resting
         if not resting:
@@ -225,7 +228,7 @@ class StationTeams(TaskAllocation[P]):
                         news = self._stations_with_news()
 
     def _stations_with_news(self) -> set[int]:
-        """Stations with work for which no pod has been looked for in vain."""
+        """Return the stations with open work that has changed since no pod was found for it."""
         view, searched, with_work = self.view, self._searched, self._with_work
         for station in self._work_news.take():
             if view.has_open_work(station):

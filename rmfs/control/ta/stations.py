@@ -1,4 +1,4 @@
-"""Functions used by several TA rules, on stations and robots."""
+"""Functions about stations and robots that several TA rules use."""
 
 from __future__ import annotations
 
@@ -61,9 +61,9 @@ def keeper_of(view: View, robot: Robot, pod: int) -> Robot:
 def near_by(
     view: View, robot: Robot, radius_m: float, among: Iterable[int], consult: Consult
 ) -> list[int]:
-    """Return those stations of `among` that are near a robot, and that its pod can serve.
+    """Return those stations of `among` that are near a robot and have work for its pod.
 
-    They are on the robot's tier, at most `radius_m` from it (Euclidean distance).
+    A station is near if it is on the robot's tier and its Euclidean distance is at most `radius_m`.
     """
     stations = [view.stations[index] for index in among]
     if not stations:
@@ -80,9 +80,9 @@ def near_by(
 
 
 def far_first(view: View) -> list[int]:
-    """Return the pick and replenishment stations by distance from the middle of their tier.
+    """Return the pick and replenishment stations, those farthest from the middle of the tier first.
 
-    The farthest come first; ties are in order of number.
+    Stations at equal distances are in order of number.
     """
     layout, at = view.layout, waypoints(view)
     tiers = [layout.tiers[tier] for tier in layout.tier[at].tolist()]

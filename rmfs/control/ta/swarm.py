@@ -1,4 +1,4 @@
-"""TA swarm: stations attract robots according to their work and distance."""
+"""TA swarm: a station attracts more robots the more work it has and the nearer it is."""
 
 from __future__ import annotations
 
@@ -62,14 +62,14 @@ class Swarm(Solo[SwarmParameters]):
     n is the number of orders or bundles at the station, and m the number of robots matched with it:
     a robot is matched with the station for which it fetches or carries a pod, until it has stored
     the pod. A station is drawn with a probability proportional to its weight
-    s^2 / (s^2 + alpha T^2 + beta d^2), where alpha is `threshold_weight`, beta `distance_weight`,
-    T half of `work_limit`, rounded down, and d the Manhattan distance in m from the robot. Then the
-    multipliers of the drawn station and of stations without stimulus are set to 1, and the others
-    grow.
+    s^2 / (s^2 + alpha T^2 + beta d^2), where alpha is `threshold_weight`, beta is
+    `distance_weight`, T is half of `work_limit`, rounded down, and d is the Manhattan distance in m
+    from the robot to the station. Then the multipliers of the drawn station and of all stations
+    without stimulus are set to 1; the others are multiplied by `growth`, up to `growth_limit`.
 
-    Let S be the number of stations, and R be `rest_share` times S, rounded. If the number of
-    stations without stimulus exceeds R by e, a robot can also draw rest, which has the weight
-    e^3 / (S - R)^3. If rest is drawn, no multiplier grows.
+    Let S be the number of stations, and let R be `rest_share` times S, rounded. If the number of
+    stations without stimulus exceeds R by e, the robot can also draw rest instead of a station; the
+    weight of rest is e^3 / (S - R)^3. If rest is drawn, no multiplier grows.
     """
 
     parameters_model = SwarmParameters
@@ -81,7 +81,7 @@ class Swarm(Solo[SwarmParameters]):
         self._matched = [station_of_task(robot) for robot in view.robots]
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Continue with the carried pod, or draw a station."""
+        """Yield a task for the carried pod or, without a pod, work for a drawn station or rest."""
         if robot.pod < 0:
             yield self.work_for(robot, consult) or self.to_rest(robot)
             return
@@ -106,7 +106,7 @@ class Swarm(Solo[SwarmParameters]):
         return bring(self.view, chosen, pod, station)
 
     def _next_station(self, robot: Robot, consult: Consult) -> int:
-        """Where a carried pod is served next; -1 if it is to be parked."""
+        """Return the station where a carried pod is served next; -1 if it is to be parked."""
         matched = self._matched[robot.index]
         if matched < 0:
             matched = self._draw_station(robot)

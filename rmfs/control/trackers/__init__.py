@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 class Tracker:
     """Base class of trackers, which keep statistics for several controllers.
 
-    A tracker may read the view, but changes nothing in it. It starts from the state of the world
-    when a controller first requests it, and exists until the end of the run, so that it is up to
-    date for a controller installed later.
+    A tracker reads the view, but changes nothing in it. It starts from the state of the world when
+    a controller first requests it. It exists until the end of the run, so it is also up to date for
+    controllers that are installed later.
 
     Attributes
     ----------
     hears
-        Events that are passed to `hear` immediately.
+        Events that are passed to `hear` as soon as they happen.
     """
 
     hears: ClassVar[frozenset[Trigger]] = frozenset()
@@ -30,14 +30,14 @@ class Tracker:
         self.view = view
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Process an event listed in `hears`; `Trigger` describes the subject of each event."""
+        """Process an event listed in `hears`; `Trigger` describes the subjects of events."""
 
 
 T = TypeVar("T", bound=Tracker)
 
 
 class Trackers:
-    """The trackers of a run, made on request: one for each combination of class and settings."""
+    """The trackers of a run, created on request: one per combination of class and settings."""
 
     def __init__(self, view: View) -> None:
         self._view = view
@@ -50,15 +50,15 @@ class Trackers:
         """Return a tracker, creating it if necessary.
 
         A controller that uses trackers, or a tracker that uses others, must request them in its
-        constructor. A tracker created later would be notified of events only after the next
-        exchange of a controller.
+        constructor. A tracker that is created later is not notified of events until a controller is
+        exchanged.
 
         Parameters
         ----------
         kind
             Class of the tracker.
         settings
-            Arguments that its constructor takes after the view.
+            Further arguments of the constructor, after the view.
         """
         key = (kind, settings)
         if key not in self._made:

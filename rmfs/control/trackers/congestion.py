@@ -1,8 +1,8 @@
 """Congestion: where robots have waited for others, and the delay to expect on a trip.
 
-In each region of the floor, the time that robots with a destination stood still is divided by the
-number of waypoints that they passed. Queues of stations are left out, since waiting there has other
-causes.
+The delay in a region of the floor is the time for which robots with a destination stood still in
+it, divided by the number of waypoints that robots passed in it (plus 20, so that a few passages
+have little effect). Queue zones of stations are left out, since waiting there has other causes.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ KEPT = 0.9
 minutes."""
 
 DOUBT = 20.0
-"""Passages without delay that are added to those counted, so that a few mean little."""
+"""Passages without delay that are added to those counted, so that a few have little effect."""
 
 AHEAD_S = 10.0
 """Minimum simulated time between two forecasts, in s."""
@@ -43,28 +43,30 @@ RECENT, FORECAST = "recent", "forecast"
 
 
 class Congestion(Tracker):
-    """Delay per region of the floor.
+    """Expected delay in each region of the floor.
 
     Parameters
     ----------
     view
         The world.
     source
-        `recent`: the counts of this run, of which half are forgotten after seven minutes.
-        `forecast`: these, multiplied by the number of robots whose straight ways to their
-        destinations lead through the region now, compared with its recent mean. Otherwise, the path
-        of the table `heat` (`.parquet` or `.csv`) of an earlier run in the same layout; its counts
-        are used unchanged.
+        Source of the delay. `recent`: passages and waiting times in this run; the weight of a count
+        falls by half in seven minutes. `forecast`: as `recent`, but the delay in a region is
+        multiplied by a factor, which compares the number of robots whose straight routes to their
+        destinations now lead through the region with the recent mean of this number. Any other text
+        is the path of the table `heat` (`.parquet` or `.csv`) of an earlier run in the same layout;
+        its counts keep their full weight.
 
     Attributes
     ----------
     regions
-        The regions.
+        The regions of the floor.
 
     Raises
     ------
     InputError
-        If there is no such table, or it does not belong to the layout.
+        If `source` is a path at which there is no such table, or the table does not belong to the
+        layout.
     """
 
     def __init__(self, view: View, source: str = RECENT) -> None:
@@ -88,18 +90,18 @@ class Congestion(Tracker):
 
     @property
     def flow_per_h(self) -> NDArray[np.float64]:
-        """Waypoints passed per hour in each region, shape `regions.shape`; nan if unknown."""
+        """Waypoints passed per hour in each region, shape `regions.shape`; nan if not known."""
         self._update()
         return self._passages * (3600.0 / self._span_s if self._span_s else np.nan)
 
     @property
     def delay_s(self) -> NDArray[np.float64]:
-        """Delay to expect per waypoint passed, in s, shape `regions.shape`."""
+        """Expected delay per waypoint passed in each region, in s, shape `regions.shape`."""
         self._update()
         return self._delay_s()
 
     def on_trips(self, waypoint: int, others: NDArray[np.integer]) -> NDArray[np.float64]:
-        """Return the delay to expect on trips from a waypoint to n others, in s, shape (n,)."""
+        """Return the expected delay on trips from a waypoint to n others, in s, shape (n,)."""
         self._update()
         return self._density.along(waypoint, others)
 

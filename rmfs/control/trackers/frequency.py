@@ -1,4 +1,4 @@
-"""Order frequencies of SKUs and of pairs of SKUs."""
+"""How often SKUs, and pairs of SKUs, have been ordered."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Frequency(Tracker):
-    """Number of units ordered of each SKU, before the run and since its start."""
+    """Number of units ordered per SKU, including orders from before the run."""
 
     def __init__(self, view: View) -> None:
         super().__init__(view)
@@ -35,7 +35,7 @@ class Frequency(Tracker):
 
     @property
     def share(self) -> NDArray[np.float64]:
-        """Units ordered of each SKU, divided by those of the most ordered SKU, shape (K,)."""
+        """Units ordered of each SKU, divided by the units of the most ordered SKU, shape (K,)."""
         units = self.units
         return units / max(int(units.max()), 1)
 
@@ -62,10 +62,11 @@ class PairFrequency(Tracker):
         self._count(line.sku for line in subject.lines)
 
     def orders_with(self, sku: int) -> NDArray[np.int64]:
-        """Return, for each SKU, how many orders contain both it and the given SKU, shape (K + 1,).
+        """Return, for each SKU, the number of orders that contain it together with the given SKU.
 
-        The entry of the given SKU is 0. The last entry, with index K, is 0 too, so that rows of
-        `Inventory.skus_on`, which are padded with K, can be used as indices.
+        The shape is (K + 1,). The entry of the given SKU itself is 0. The last entry, with index K,
+        is also 0, so that rows of `Inventory.skus_on`, which are padded with K, can be used as
+        indices.
         """
         counts = np.zeros(len(self.view.skus) + 1, np.int64)
         partners = self._orders.get(sku)

@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from rmfs.control.view import View
 
 Demand = Literal["assigned", "unbound", "wanted"]
-"""Which units are demand. `assigned`: units that orders at stations need and that are not bound to
-a pod. `unbound`: also such units of orders in the backlog. `wanted`: all units that are ordered and
-not yet picked."""
+"""Which units count as demand. `assigned`: units that orders at stations need and that are not
+bound to a pod. `unbound`: also such units of orders in the backlog. `wanted`: all units that are
+ordered and not yet picked."""
 
 _STEPS = 1 << 20  # popularity is counted in integers, so that sums never drift
 
 
 def demand(view: View, kind: Demand) -> NDArray[np.int64]:
-    """Return the number of units in demand of each SKU, shape (K,)."""
+    """Return, for each of the K SKUs, the number of units in demand (see `Demand`), shape (K,)."""
     if kind == "wanted":
         return view.inventory.wanted
     units: NDArray[np.int64] = view.need.sum(axis=0, dtype=np.int64)
@@ -34,12 +34,12 @@ def demand(view: View, kind: Demand) -> NDArray[np.int64]:
 
 
 class DemandOnPods(Tracker):
-    """Number of units on each pod that are in demand.
+    """For each pod, the number of its units that are in demand.
 
-    Of a SKU, all units on the pod are counted, but not more than are in demand.
+    If a pod has more units of a SKU than are in demand, only the units in demand are counted.
 
     Changes of stock are counted as they happen. Changes of demand are counted when `units` is
-    called; only SKUs whose demand has changed are processed then.
+    called; it processes only the SKUs whose demand has changed.
     """
 
     hears = frozenset({Trigger.UNIT_PICKED, Trigger.BUNDLE_STORED})
@@ -54,7 +54,7 @@ class DemandOnPods(Tracker):
             self._units += np.minimum(contained[sku], self._demand[sku])
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Update the count of a pod that a unit has left, or in which a bundle was stored."""
+        """Update the count of a pod from which a unit is picked or in which a bundle is stored."""
         if trigger is Trigger.UNIT_PICKED:
             (pod, sku), change = subject, -1
         else:
@@ -79,8 +79,9 @@ class PodScores(Tracker):
     """Scores of pods: how useful they are now, and how soon they will be needed again.
 
     *Utility* is the number of units on a pod that are in demand, where demand is all units
-    ordered and not yet picked (`DemandOnPods`). *Speed* is the sum, over the units on a pod, of the
-    popularity of each unit's SKU. Each of the two is divided by its maximum over all pods.
+    ordered and not yet picked (`DemandOnPods`). *Speed* is the sum, over all units on a pod, of the
+    popularity of the unit's SKU, that is, the weight with which the SKU is ordered. Utility and
+    speed are each divided by their maximum over all pods.
     """
 
     hears = DemandOnPods.hears
@@ -96,7 +97,7 @@ class PodScores(Tracker):
             self._speed += row * weights[sku]
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Update the speed of a pod that a unit has left, or in which a bundle was stored."""
+        """Update the speed of a pod from which a unit is picked or in which a bundle is stored."""
         if trigger is Trigger.UNIT_PICKED:
             pod, sku = subject
             self._speed[pod] -= self._weight[sku]

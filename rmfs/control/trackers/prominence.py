@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 class Prominence(Tracker):
     """Storage locations ranked by a loaded robot's travel time to the nearest pick station.
 
-    Locations with equal times share a rank. Ranks are counted without gaps from 0, the most
-    prominent.
+    Rank 0 is the most prominent. Locations with equal times share a rank; no rank is skipped.
 
     Attributes
     ----------

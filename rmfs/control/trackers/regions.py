@@ -1,4 +1,4 @@
-"""Square regions of the floor, and sums of their values along trips through them."""
+"""Square regions of the floor, and sums of a quantity along trips through the regions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class Regions:
     shape
         Numbers of tiers, rows (along y) and columns (along x).
     of
-        Region of each waypoint, as an index of a flattened array of this shape, shape (N,).
+        Region of each waypoint, as an index into a flattened array of shape `shape`; shape (N,).
     """
 
     def __init__(self, layout: Layout) -> None:
@@ -43,21 +43,27 @@ class Regions:
         )
 
     def sums(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the sum over each region of a value per waypoint, shape `shape`."""
+        """Return, for each region, the sum of the values of its waypoints, shape `shape`.
+
+        Parameters
+        ----------
+        values
+            Value of each waypoint, shape (N,).
+        """
         cells = int(np.prod(self.shape))
         sums: NDArray[np.float64] = np.bincount(self.of, values, cells).astype(np.float64)
         return sums.reshape(self.shape)
 
 
 class Density:
-    """A quantity per metre of way in each region, which is added up along trips.
+    """Adds up, along trips, a quantity that is given per metre driven in each region.
 
     Parameters
     ----------
     regions
         The regions of the floor.
     per_metre
-        The quantity in each region, shape `regions.shape`.
+        The quantity per metre driven in each region, shape `regions.shape`.
     """
 
     def __init__(self, regions: Regions, per_metre: NDArray[np.float64]) -> None:
@@ -70,10 +76,11 @@ class Density:
         self._crossed.cumsum(axis=1, out=self._by_y[:, 1:, :])
 
     def along(self, waypoint: int, others: NDArray[np.integer]) -> NDArray[np.float64]:
-        """Return the sums along straight trips from a waypoint to n others, shape (n,).
+        """Return the sums of the quantity along trips from a waypoint to n others, shape (n,).
 
-        A trip goes along one axis and then along the other; the result is the mean over both
-        sequences. Waypoints on another tier are treated as if they were on the tier of the first.
+        A trip goes straight along one axis and then straight along the other; the result is the
+        mean over the two possible sequences. Waypoints on other tiers are treated as if they were
+        on the tier of `waypoint`.
         """
         regions = self._regions
         tier, row, column = (of[waypoint] for of in (regions.tier, regions.row, regions.column))
@@ -98,6 +105,6 @@ class Density:
     def _upto(
         self, before: NDArray[np.float64], region: tuple[Index, ...], part: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        """Return the sum over the regions before one, and over a part of that one."""
+        """Return the sum over the regions before the given one and over a part of the given one."""
         upto: NDArray[np.float64] = before[region] + part * self._crossed[region]
         return upto

@@ -51,20 +51,20 @@ class TurnoverClasses(Tracker):
 
     - Storage locations are sorted by distance to the nearest pick station and divided at the class
       borders; the number of locations up to a border is rounded down.
-    - Pods are sorted by the mean number of units ordered per SKU that they contain, the highest
+    - Pods are sorted by the number of units ordered, averaged over the SKUs on the pod, the highest
       first. Ties are broken by distance to the nearest pick station, then by number. The pods are
       divided among the classes in proportion to the number of locations in each class.
-    - SKUs are sorted by units ordered, the most first; ties are broken by number. The weight of a
-      SKU is the mean of two shares: its share of all units ordered, and the share of its space per
-      unit in the sum of the spaces per unit of all SKUs. A class takes SKUs until the total
-      weight of the SKUs in this and faster classes reaches the share that the pods of these classes
-      have in the capacity of all pods.
+    - SKUs are sorted by units ordered, the most ordered first; ties are broken by number. The
+      weight of a SKU is the mean of two shares: its share of all units ordered, and its space per
+      unit as a share of the sum of this quantity over all SKUs. A class takes SKUs until the total
+      weight of the SKUs in this and faster classes reaches the share of the total capacity of pods
+      that belongs to pods of these classes.
 
-    Each classification counts the units ordered since the one before; the first counts all units
-    ordered so far, including those of orders from before the run. Pods and SKUs are classified when
-    a rule first requests the tracker. They are reclassified on the first access after
-    `reallocation_period_s` have passed, or `reallocation_orders` orders have arrived, since the
-    last classification. Locations keep their class.
+    Pods and SKUs are classified when a rule first requests the tracker. They are reclassified on
+    the first access after `reallocation_period_s` have passed, or `reallocation_orders` orders have
+    arrived, since the last classification. The first classification counts all units ordered so
+    far, including those of orders from before the run; later ones count the units ordered since the
+    previous classification. Locations keep their class.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ class TurnoverClasses(Tracker):
         return self._sku_class
 
     def _keep_up(self) -> None:
-        """Class pods and SKUs anew if it is time."""
+        """Reclassify pods and SKUs if this is due."""
         given, view = self.parameters, self.view
         late = 0 < given.reallocation_period_s <= view.now_s - self._classed_s
         if late or 0 < given.reallocation_orders <= view.orders_created - self._classed_orders:
@@ -145,7 +145,7 @@ class TurnoverClasses(Tracker):
 
 
 def _cut(in_order: NDArray[np.intp], ends: list[int]) -> NDArray[np.int64]:
-    """Give each of n things its class: the first `ends[0]` in the order class 0, and so on."""
+    """Return the class of each of n items: 0 for the first `ends[0]` of `in_order`, and so on."""
     classes = np.empty(len(in_order), np.int64)
     classes[in_order] = np.searchsorted(ends, np.arange(len(in_order)), side="right")
     return classes

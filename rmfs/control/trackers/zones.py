@@ -44,24 +44,25 @@ class ZoneParameters(Parameters):
 class Zones(Tracker):
     """The zone, if any, to which each of the L storage locations (places) belongs.
 
-    Each of the S pick stations has a cache of ceil(`cache_share` x L / S) places, from which robots
-    reach the station fast, and a drop-off zone of `drop_off_places` places, which they reach fast
-    from the station.
+    Each of the S pick stations has two zones: a cache of ceil(`cache_share` x L / S) places, from
+    which robots reach the station quickly, and a drop-off zone of `drop_off_places` places, which
+    robots reach quickly from the station.
 
-    Places are assigned one after another. Of all pairs of an unassigned place and a zone that is
-    not full, the next pair is chosen by the priority of the kind of zone (`zone_priority`); then by
-    the least travel time of a loaded robot (from a place in a cache to the station, or from the
-    station to a place in a drop-off zone); then by the longest time in the other direction. Ties go
-    to the place with the lowest number, then to drop-off zones, then to the station with the lowest
-    number.
+    Places are assigned to zones one after another. Each time, a pair of an unassigned place and a
+    zone that is not yet full is chosen, by these criteria in sequence: the priority of the kind of
+    zone (`zone_priority`); the shortest travel time of a loaded robot (from the place to the
+    station for a cache, from the station to the place for a drop-off zone); the longest travel time
+    in the opposite direction; the lowest number of the place; drop-off zones before caches; the
+    lowest number of the station.
 
     Attributes
     ----------
     cache_of, drop_off_of
-        For each place, the pick station to whose cache it belongs, and the pick station to whose
-        drop-off zone it belongs; -1 if there is none; shape (L,).
+        The pick station to whose cache, or to whose drop-off zone, each place belongs, shape
+        (L,); -1 if there is none.
     cache_size
-        Number of places of each cache, shape (S,); less than specified if too few are left.
+        Number of places of each cache, shape (S,); less than specified if there are not enough
+        places.
     caches
         For each pick station, the indices of the places of its cache.
     """
@@ -82,7 +83,7 @@ class Zones(Tracker):
         self._cache_mask: NDArray[np.bool_] = self.cache_of >= 0
 
     def occupied(self) -> NDArray[np.int64]:
-        """Return how many places of each cache hold a pod or are reserved for a robot, (S,)."""
+        """Return how many places of each cache hold a pod or are kept by a robot, shape (S,)."""
         taken = self._cache_mask & ~self.view.storage.is_empty
         return np.bincount(self.cache_of[taken], minlength=len(self.cache_size))
 

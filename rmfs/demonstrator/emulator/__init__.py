@@ -1,1 +1,1 @@
-"""An emulated room whose robots have the imperfections of real ones and run the same program."""
+"""An emulated room; its robots run the program of real robots and have similar imperfections."""

@@ -28,9 +28,9 @@ class EmulatedBase:
     speed_factor
         Ratio of the actual to the commanded speed of the wheels.
     slip
-        Largest share of a wheel's travel that may be lost to slip.
+        Maximum share of a wheel's travel that is lost to slip; the share is drawn at each step.
     rng
-        Random stream that draws the slip.
+        Random stream from which the slip is drawn.
     """
 
     x_m: float

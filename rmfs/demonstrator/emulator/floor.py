@@ -27,14 +27,14 @@ IMAGE = (64, 32)
 
 
 class Floor:
-    """A picture of the floor, and the views that cameras have of it.
+    """A picture of the floor, from which the images of the robots' cameras are taken.
 
     Parameters
     ----------
     layout
         The layout; tape lies along each edge between two waypoints.
     unkindness
-        Imperfections of the room, of which glare, noise and gaps in the tape are used.
+        Imperfections of the room; only `glare`, `noise` and `gap_m` are used.
     rng
         Random stream for the noise patterns, one of which is added to each image.
     """

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Pace(Protocol):
-    """Determines when the room goes on from one tick (time step) to the next."""
+    """Controls when an emulated room proceeds from one tick (time step) to the next."""
 
     has_ended: bool
     """Whether the demonstration is over."""
@@ -24,14 +24,14 @@ class Pace(Protocol):
         """Wait until the first tick may begin."""
 
     def tick(self, room: Room) -> bool:
-        """Wait until the room may go on to the next tick; return false if there is no next tick."""
+        """Wait until the room may begin the next tick; return false if there is no next tick."""
 
     def close(self) -> None:
         """End the connection to the server, if there is one."""
 
 
 class RealTime:
-    """Timing by the wall clock: a tick takes its nominal time; the server has its own clock."""
+    """Timing by the wall clock, without synchronisation: the server has its own clock."""
 
     def __init__(self) -> None:
         self.has_ended = False
@@ -71,10 +71,11 @@ class InStep:
             self._greet(0)
 
     def tick(self, room: Room) -> bool:
-        """Send the time to the server, and wait until it has processed the tick.
+        """Send the time to the server, and wait until the server has processed the tick.
 
-        Without a connection, time advances by the wall clock. Return false if the server ends the
-        demonstration instead of processing the tick.
+        If there is no connection, try to connect, and wait for one tick of wall time if this fails.
+        Return false if the server ends the demonstration instead of processing the tick, and true
+        otherwise.
         """
         if not self._link.is_up:
             self._greet(room.now_us)  # nobody there: time goes on as it does
@@ -95,7 +96,7 @@ class InStep:
         self._link.close()
 
     def _greet(self, now_us: int) -> None:
-        """Try to reach the server, for a tick of real time."""
+        """Try to connect to the server; if there is still no session, sleep for one tick."""
         self._waited_us = max(self._waited_us, now_us) + TICK_US
         self._link.poll(self._waited_us)
         if not self._link.is_up:

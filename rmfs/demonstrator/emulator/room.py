@@ -35,7 +35,7 @@ _PARTS = 2  # physics steps in a tick
 
 @dataclass
 class Address:
-    """The address of the server, and the secret that robots share with it."""
+    """The address of the server, and the secret that the server and the robots share."""
 
     host: str
     port: int
@@ -43,7 +43,7 @@ class Address:
 
 
 class EmulatedRobot:
-    """An emulated robot: its base on the floor, and its program, if that is running."""
+    """An emulated robot: its base, its sensors and, while the program is running, the program."""
 
     def __init__(
         self,
@@ -92,7 +92,7 @@ class Room:
     layout
         The layout whose edges are the lines on the floor.
     robots
-        Names of the robots in the room, and their indices in the layout.
+        Index in the layout of each robot in the room, by the robot's name.
     tags
         The tag of every waypoint.
     address
@@ -102,8 +102,8 @@ class Room:
     seed
         Seed of all random draws.
     memory
-        Folder in which the robots' programs save the routes that the server has ordered them to
-        drive. Default: a temporary folder.
+        Folder in which the robots' programs save their route orders (commands of the server to
+        drive over waypoints). Default: a temporary folder.
     pace
         Timing of the room. Default: synchronised with the server.
 
@@ -142,13 +142,15 @@ class Room:
         }
 
     def run(self, until_us: int | None = None, each: Callable[[Room], None] | None = None) -> None:
-        """Run the room; if it is synchronised with the server, it first waits for the server.
+        """Run the room until the demonstration ends or the room is stopped.
+
+        If the room is synchronised with the server, first wait until the server is available.
 
         Parameters
         ----------
         until_us
-            Time of the room, in microseconds, at which the run ends unless it has ended before.
-            Default: no limit.
+            Time of the room, in microseconds, at which the run ends at the latest. Default: no
+            limit.
         each
             Function called once per tick, for example to cause failures.
         """
@@ -184,9 +186,10 @@ class Room:
         return {name: wire.written for name, wire in wires.items() if wire and not wire.is_closed}
 
     def fetch(self, sizes: dict[str, int]) -> None:
-        """Wait until each robot named in `sizes` has received the number of bytes given there.
+        """Wait until each robot named in `sizes` has received at least that number of bytes.
 
-        The wait for a robot also ends if nothing arrives for 0.5 s or its connection is closed.
+        The wait for a robot also ends if nothing arrives for 0.5 s or if the robot's connection is
+        closed.
         """
         for name, size in sizes.items():
             wire = self.robots[name].wire if name in self.robots else None

@@ -1,4 +1,4 @@
-"""Sensors of emulated robots: the camera and the tag reader, over the emulated floor."""
+"""Sensors of emulated robots: a camera and a tag reader, which observe the emulated floor."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ class FloorTags:
     base
         The base of the robot that carries the reader.
     missed
-        Share of passages over a tag in which the tag is missed.
+        Probability that a tag is missed when the reader passes over it.
     rng
-        Random stream that draws the missed passages.
+        Random stream that determines which tags are missed.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class FloorTags:
         self._found: str | None = None
 
     def look(self) -> None:
-        """Detect a tag that has come into range, unless it is missed; call this after each move."""
+        """Detect a tag that has come into range, or miss it; to be called after each move."""
         here = (self._base.x_m, self._base.y_m)
         if here == self._here:
             return

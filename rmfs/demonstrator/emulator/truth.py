@@ -25,7 +25,8 @@ class Truth:
     Attributes
     ----------
     lines_x_m, lines_y_m
-        x positions of the lines along y, and y positions of the lines along x.
+        x coordinates of the lines parallel to the y axis, and y coordinates of the lines parallel
+        to the x axis, in m.
     nearest_m
         Smallest distance so far between the centres of any two robots; every robot is assumed to
         move in a straight line from one measurement to the next.
@@ -47,12 +48,12 @@ class Truth:
 
     @classmethod
     def of(cls, layout: Layout) -> Truth:
-        """Return a `Truth` without measurements, for lines along x and y through all waypoints."""
+        """Return a `Truth` without measurements; its lines are those through all waypoints."""
         return cls(np.unique(layout.x_m).tolist(), np.unique(layout.y_m).tolist())
 
     @property
     def lateral_mean_m(self) -> float:
-        """Mean distance from the nearest line, as defined in the class; 0 without measurements."""
+        """Mean distance of driving robots from the nearest line; 0 without measurements."""
         return self._lateral_sum / self._looks if self._looks else 0.0
 
     def look(self, bases: Sequence[EmulatedBase], seconds: float) -> None:
@@ -87,7 +88,7 @@ class Truth:
 
 
 def _closest(x0: float, y0: float, x1: float, y1: float) -> float:
-    """Return how near a point that moves straight comes to the origin."""
+    """Return the minimum distance from the origin to the segment from (x0, y0) to (x1, y1)."""
     dx, dy = x1 - x0, y1 - y0
     length = dx * dx + dy * dy
     share = 0.0 if length == 0 else max(0.0, min(1.0, -(x0 * dx + y0 * dy) / length))

@@ -16,7 +16,7 @@ class Unkindness:
     slip
         Maximum share of a wheel's travel that is lost to slip; the share is drawn at each step.
     missed_tags
-        Share of passages over a tag in which the reader misses the tag.
+        Probability that a tag is missed when the reader passes over it.
     lost_messages
         Share of messages that are lost, in each direction.
     delay_us

@@ -17,17 +17,16 @@ _HEAD = 36  # bytes of a frame before its text
 
 
 class UnkindWire:
-    """A TCP connection that delays frames and loses some, but never the first of either side.
+    """A TCP connection that delays frames and loses some, but not the first frame of either side.
 
     Parameters
     ----------
     tcp
         The connection.
     unkindness
-        Imperfections of the room, of which the share of lost messages and the maximum delay of the
-        others are used.
+        Imperfections of the room; only `lost_messages` and `delay_us` are used.
     rng
-        Random stream that draws losses and delays.
+        Random stream from which losses and delays are drawn.
 
     Attributes
     ----------
@@ -57,7 +56,7 @@ class UnkindWire:
         self.pump()
 
     def read(self) -> bytes | None:
-        """Return the bytes that have arrived by now."""
+        """Return the bytes of the frames whose delay is over; None if the connection is closed."""
         self.fetch()
         due = []
         while self._in and self._in[0][0] <= self.now_us:
@@ -77,9 +76,9 @@ class UnkindWire:
             self.written += len(frame)
 
     def fetch(self, upto: int | None = None, timeout_s: float = 5.0) -> None:
-        """Read what has arrived; with `upto`, go on until `received` is at least `upto`.
+        """Read the bytes that have arrived; with `upto`, until `received` is at least `upto`.
 
-        Reading also ends if nothing arrives for `timeout_s`, or the connection is closed.
+        Reading also ends if nothing arrives for `timeout_s` or the connection is closed.
         """
         while not self.is_closed:
             data = self._tcp.read()
@@ -93,7 +92,7 @@ class UnkindWire:
                 return
 
     def await_frame(self, timeout_s: float = 5.0) -> None:
-        """Read until the first frame has arrived or time has run out."""
+        """Read until the first frame has arrived; stop if nothing arrives for `timeout_s`."""
         self.fetch(_HEAD, timeout_s)
         while not self.is_closed and not self._frames_in:
             before = self.received

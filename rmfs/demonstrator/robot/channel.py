@@ -1,8 +1,8 @@
 """A session in which every message arrives exactly once and in order, despite losses.
 
 Each side numbers its messages and acknowledges the last number received from the other. A message
-that is not acknowledged in time is sent again, with all later ones. This module reads neither clock
-nor socket; the caller passes time and bytes.
+that is not acknowledged in time is sent again, with all later ones. This module uses neither a
+clock nor a socket; the caller provides the time and the received bytes.
 
     message := {"n": number or absent, "ack": number, "clock": microseconds, "type": name, ...}
 
@@ -31,8 +31,8 @@ class Channel:
     Parameters
     ----------
     key, own, other
-        Key of the session, and the labels (see `protocol`) of the frames that this side writes
-        and of those that it reads.
+        Key of the session, label (see `protocol`) of the frames that this side sends, and label of
+        the frames that it receives.
     now_us
         Present time in microseconds.
     rest

@@ -8,11 +8,14 @@
         link.send({"type": "tag", ...})
         link.flush(now_us)
 
-Only `Link.wait` and opening a connection block. At the beginning of a session, each side proves
-that it knows the secret, and both derive the same key from the secret and the two nonces:
+Only two operations block: `Link.wait`, and opening a connection. At the beginning of a session,
+each side proves that it knows the secret. Both sides then derive the same key from the secret and
+two nonces (random texts used only once), one of each side:
 
     server -> robot   welcome: version, nonce
-    robot -> server   hello: version, name of the robot, nonce (valid for this welcome only)
+    robot -> server   hello: version, name of the robot, nonce
+
+A hello is valid only as the reply to one particular welcome.
 """
 
 from __future__ import annotations
@@ -89,7 +92,7 @@ class TcpWire:
 
 
 class Link:
-    """Keeps a robot in a session with the server; after a failure, a new session is opened.
+    """Connects a robot to the server, and opens a new session whenever a session has failed.
 
     Parameters
     ----------
@@ -149,7 +152,7 @@ class Link:
                 self._wire.write(frame)
 
     def wait(self, timeout_s: float) -> None:
-        """Wait until data has arrived or time has run out; if no `TcpWire` is open, do not wait."""
+        """Wait for data for at most `timeout_s`; return at once if no `TcpWire` is open."""
         if isinstance(self._wire, TcpWire):
             select.select([self._wire.fileno()], [], [], timeout_s)
 

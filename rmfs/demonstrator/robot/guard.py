@@ -16,7 +16,7 @@ import traceback
 from collections.abc import Callable
 
 PATIENCE_S = 0.5
-"""Maximum time of a step of the program, in s; at 0.21 m/s, the robot drives 10 cm in it."""
+"""Maximum time of a step of the program, in s; in this time, the robot drives 10 cm at 0.21 m/s."""
 
 
 def guarded(
@@ -24,7 +24,7 @@ def guarded(
     stop: Callable[[], None],
     patience_s: float = PATIENCE_S,
 ) -> int:
-    """Run a program, and stop the robot when the program ends for whatever reason.
+    """Run a program, and stop the robot when the program ends, whatever the reason.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def guarded(
 
     Returns
     -------
-    The program's exit code; if a signal ended the program, minus the number of the signal.
+    The program's exit code; if a signal ended the program, the negative of the signal's number.
     """
     reads, writes = os.pipe()
     child = os.fork()
@@ -68,12 +68,12 @@ def guarded(
 
 
 def _show(writes: int) -> None:
-    """Show that the program lives; without a guard it ends (the pipe is broken)."""
+    """Signal that the program is alive; if the guard has ended, the broken pipe raises OSError."""
     os.write(writes, b".")
 
 
 def _watch(reads: int, patience_s: float) -> None:
-    """Return when the program has ended, or hangs; until its first step it has all the time."""
+    """Return when the program has ended or hangs; the time before its first step is not limited."""
     timeout_s: float | None = None
     while select.select([reads], [], [], timeout_s)[0]:
         if not os.read(reads, 4096):

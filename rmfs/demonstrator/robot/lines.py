@@ -1,7 +1,7 @@
 """Detection of the line on the floor in a camera image, as in RAWSim-O.
 
 Pixels within a colour range are kept, small specks are removed by erosion, and the largest contour
-is taken as the line. The middle of its lower end gives its position.
+is taken as the line. The position of the line is the middle of the lower end of this contour.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class VideoCamera:
 
 @dataclass(frozen=True)
 class LineSettings:
-    """Settings by which a line is detected.
+    """Settings of the detection of a line.
 
     Attributes
     ----------
@@ -66,10 +66,10 @@ class LineSettings:
     erode_px
         Side of the square used for erosion, in pixels.
     smallest_share
-        Smallest area of a contour that can be a line, as a share of the image.
+        Minimum area of the line, as a share of the area of the image.
     widest_share
-        Largest width of the line's lower end, as a share of the image's width. A contour with a
-        wider lower end is taken for a line that crosses the robot's line.
+        Maximum width of the line's lower end, as a share of the image's width. A wider contour is
+        probably a line that crosses the robot's line; no line is detected then.
     lower_share
         Height of the lower part of the image into which the line must reach, as a share of the
         image's height.
@@ -91,7 +91,7 @@ def line_offset(image: NDArray[np.uint8], settings: LineSettings) -> float | Non
     image
         The image, shape (height, width, 3), with the channels blue, green and red.
     settings
-        Settings by which the line is detected.
+        Settings of the detection.
     """
     height, width = image.shape[:2]
     hsv = cv2.cvtColor(image, cv2.COLOR_BGR2HSV)
@@ -125,7 +125,7 @@ class CameraLine:
     half_width_m
         Half the width, in m, of the floor that the lower edge of an image shows.
     settings
-        Settings by which the line is detected.
+        Settings of the detection of the line.
     """
 
     camera: Camera

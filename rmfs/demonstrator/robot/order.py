@@ -30,21 +30,22 @@ class Order:
     start
         Tag of the waypoint where the run begins.
     tags, metres
-        Tags of the other waypoints of the run, and the distance in m of each of these waypoints
-        from the one before it.
+        Tags of the waypoints of the run after `start`, and the distance in m of each of these
+        waypoints from the one before it.
     granted
-        How many of these waypoints the robot may drive to so far; it must not drive further.
+        Number of waypoints in `tags` that the robot may drive to so far. It must stop at the last
+        of them.
     turned
         Whether the turn is done.
     passed
-        Number of waypoints reached.
+        Number of waypoints in `tags` that have been reached.
     since
         Wheel counters, read when the route order arrived, the turn ended or a waypoint was reached,
         whichever was last.
     ahead_m
         Position of the robot at the moment when `since` was read, in m beyond the last waypoint
-        reached. It is negative before the waypoint: the reader detects a tag before the robot is
-        over its centre.
+        reached. It is negative if the robot was still before the centre of that waypoint, since the
+        reader detects a tag at some distance.
     """
 
     number: int
@@ -91,7 +92,7 @@ class Order:
             raise ProtocolError(f"no order: {error!r}") from None
 
     def cut(self, upto: int) -> None:
-        """Shorten the run to `upto` waypoints, or to those already reached if they are more."""
+        """Shorten the run to `upto` waypoints, or to those already reached if these are more."""
         upto = max(upto, self.passed)
         del self.tags[upto:], self.metres[upto:]
 
@@ -109,12 +110,12 @@ class Order:
 
 @dataclass
 class Memory:
-    """What a robot's program stores in a file.
+    """The state of a robot's program that is saved in a file.
 
     Attributes
     ----------
     path
-        The file; None if nothing is stored.
+        The file; None if the state is not saved.
     order
         The route order in progress; None if there is none.
     last_done
@@ -127,7 +128,7 @@ class Memory:
     _written: str = field(default="", repr=False)
 
     def save(self) -> None:
-        """Write the memory to the file `path`, unless that is None or nothing has changed."""
+        """Write the memory to the file `path`, unless `path` is None or nothing has changed."""
         if self.path is None:
             return
         order = None if self.order is None else vars(self.order)

@@ -26,7 +26,7 @@ class Pid:
     _last: float | None = None
 
     def output(self, error: float, seconds: float) -> float:
-        """Return the correction for an error; the previous call was `seconds` ago."""
+        """Return the correction for an error; `seconds` is the time since the previous call."""
         change = 0.0 if self._last is None or seconds <= 0 else (error - self._last) / seconds
         self._last = error
         total = self._sum + error * seconds

@@ -48,8 +48,8 @@ class Settings:
     blind_m
         Maximum distance that the robot drives without seeing a line.
     search_m, searches
-        Length of the stretch in which a missed tag is searched for (it ends `overshoot_m` past the
-        expected position of the tag), and maximum number of searches.
+        Length of the stretch in which a missed tag is searched for, and maximum number of searches.
+        The stretch ends `overshoot_m` past the expected position of the tag.
     steering
         Weights and limit of the PID controller (`Pid`), which turns the offset of the line in m
         into an angular speed in rad/s.
@@ -257,14 +257,14 @@ class Program:
         self.base.drive(speed - rate * TRACK_M / 2, speed + rate * TRACK_M / 2)
 
     def _count_missed(self, order: Order, rolled_m: float, counts: Counts) -> None:
-        """Go on from a waypoint whose tag was missed: the next one will show."""
+        """Count a waypoint as reached although its tag was missed; the next tag will confirm it."""
         beyond = rolled_m + order.ahead_m - order.metres[order.passed]
         if beyond > self.settings.overshoot_m:
             order.passed += 1
             order.since, order.ahead_m = counts, beyond
 
     def _search(self, order: Order, overshot_m: float, counts: Counts) -> None:
-        """Drive to and fro over the place of a tag that was missed."""
+        """Drive back and forth over the expected position of a missed tag."""
         if not self._back and overshot_m < -self.settings.overshoot_m:
             self._back = True
             self._searches += 1

@@ -4,9 +4,10 @@
 
 The code covers the text (the JSON object) and a label, which is not sent. The first frame of the
 server (welcome), the first frame of the robot (hello), and the later frames of each direction have
-different labels, so that none is accepted in place of another. The label of the hello contains the
-server's nonce, a random text used only once, so that no recorded hello is accepted. The first two
-codes use a secret that both sides know, the others a key derived from it and a nonce of each side.
+different labels, so that no frame is accepted in place of another kind of frame. The label of the
+hello contains the server's nonce (a random text used only once), so that a hello recorded in an
+earlier session is not accepted. The codes of welcome and hello use a secret that both sides know.
+All later codes use a key derived from this secret and from a nonce of each side.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ class Unpacker:
 
 
 def text_of(message: Message, name: str, longest: int = 64) -> str:
-    """Return the text in a field; raise ProtocolError if it is missing, empty or too long."""
+    """Return the text in a field; raise ProtocolError if the text is missing, empty or too long."""
     value = message.get(name)
     if not isinstance(value, str) or not 0 < len(value) <= longest:
         raise ProtocolError(f"{name} must have 1 to {longest} characters (given: {value!r})")
@@ -93,7 +94,7 @@ def text_of(message: Message, name: str, longest: int = 64) -> str:
 
 
 def whole(message: Message, name: str) -> int:
-    """Return the integer in a field of a message; raise ProtocolError if it is no integer >= 0."""
+    """Return the value of a field; raise ProtocolError if the value is not an integer >= 0."""
     value = message.get(name)
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise ProtocolError(f"{name} must be a whole number, 0 or more (given: {value!r})")

@@ -1,1 +1,1 @@
-"""The server, which plans for all robots, sends orders to real ones, and tracks their progress."""
+"""The server, which plans for all robots, and commands and tracks the real or emulated ones."""

@@ -1,9 +1,10 @@
 """The clock of a demonstration: the wall clock, or that of an emulated room.
 
 One clock governs plans, heartbeats and timeouts. An emulated room is a program that emulates robots
-on a floor. It keeps the clock and synchronises with the server: it sends the time, and the number
-of bytes that each robot has sent so far. When the server has received these bytes and has done
-everything due at this time, it answers with the number of bytes that it has sent to each robot.
+on a floor. If the room keeps the clock, it synchronises with the server in every tick: it sends the
+time, and the number of bytes that each robot has sent so far. When the server has received these
+bytes and has done everything due at this time, the server answers with the number of bytes that it
+has sent to each robot.
 
     room -> server   tick: time_us, sent (number of bytes for each robot)
     server -> room   tock: time_us, sent (number of bytes for each robot)
@@ -33,10 +34,10 @@ class Clock(Protocol):
     """The clock of a demonstration."""
 
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
-        """Wait until a time is reached, and return the messages received from robots up to then."""
+        """Wait until a time is reached, and return the messages received from robots meanwhile."""
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Take note that everything due at this time has been done."""
+        """Signal that everything due at a time has been done."""
 
 
 class WallClock:
@@ -66,7 +67,7 @@ class RoomClock:
     def wait(self, hub: Hub, time_us: int) -> list[tuple[str, Message]]:
         """Wait until the room has reached a time, and return the messages of its robots.
 
-        All bytes that the robots have sent up to this time are awaited.
+        The wait ends when all bytes that the robots have sent up to this time have been received.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""A demonstration: a run in which some or all robots are real or emulated, not simulated."""
+"""A demonstration: a run in which some or all robots are real or emulated instead of simulated."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ if TYPE_CHECKING:
 
 @dataclass
 class Demonstration:
-    """The real or emulated robots of a demonstration, and how the server reaches them.
+    """A demonstration: its real or emulated robots, and the server's sessions with them.
 
     Attributes
     ----------
     hub
-        The server's sessions with these robots.
+        The server's sessions with the real or emulated robots.
     robots
-        Names of these robots, and their indices in the layout.
+        Index in the layout of each of these robots, by the robot's name.
     tags
         The tag of every waypoint.
     journal
         File of received messages. If it exists, the run first processes the messages in it again
         and then continues with new ones.
     is_emulated
-        Whether the robots are in an emulated room, a program that emulates floor and robots and
-        keeps the clock of the demonstration.
+        Whether an emulated room, a program that emulates the floor and the robots, keeps the clock
+        of the demonstration.
     past_failure
         Whether to omit the messages received in the tick (step of 50 ms) in which the server
         failed.
@@ -55,7 +55,7 @@ class Demonstration:
     traffic: GuidedTraffic | None = None
 
     def run(self, *inputs: Any, seed: int = 0, **options: Any) -> Run:
-        """Run a simulation in which these robots are real or emulated.
+        """Run a simulation in which the robots in `robots` are real or emulated.
 
         Parameters
         ----------
@@ -95,11 +95,11 @@ class Demonstration:
 
 
 def expected(robots: dict[str, int], *, is_emulated: bool) -> list[str]:
-    """Return the names of all clients that may connect: robots and, if emulated, their room."""
+    """Return the names of all clients that may connect: robots and, if emulated, also the room."""
     return [*robots, ROOM] if is_emulated else [*robots]
 
 
 def _plain(options: dict[str, Any]) -> dict[str, Any]:
-    """Return those options that decide what happens."""
+    """Return the options that influence the course of a demonstration."""
     kept: Callable[[str], bool] = ("overrides", "pacing", "allow_not_well_formed").__contains__
     return {name: value for name, value in options.items() if kept(name)}

@@ -25,9 +25,9 @@ class Guest(NamedTuple):
     name
         Name of the client.
     key
-        Key of its session.
+        Key of the client's session.
     rest
-        Bytes received after its first frame.
+        Bytes received after the client's first frame.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Greeting:
         return pack(message, self._secret, WELCOME)
 
     def receive(self, data: bytes) -> Guest | None:
-        """Add received bytes; return the client if its hello is now complete, else None.
+        """Process received bytes; return the client if its hello is now complete, otherwise None.
 
         Raises
         ------

@@ -1,11 +1,12 @@
-"""Guides real robots along the plans of the traffic layer, and adapts the plans to them.
+"""Guides real robots along the plans of the traffic layer, and adapts the plans if robots are late.
 
-Every 50 ms, in a tick, the server first processes the messages of the robots. A robot is late if it
-has not yet confirmed something that its plan requires of it before the next tick. The rest of its
-plan is then postponed, together with the plans of robots that use the same waypoints later. Then
-the robots whose next motion is due get route orders (commands to turn and to drive over waypoints);
-each robot is told how far its path is clear. Therefore, the plan never runs ahead of reality, and a
-robot never enters a waypoint before all robots that were to use this waypoint earlier have left it.
+In each tick (every 50 ms), the server first processes the messages of the robots. A robot is late
+if its plan requires a step before the next tick, such as reaching a waypoint, that the robot has
+not yet confirmed. The rest of its plan is then postponed, together with the plans of robots that
+use the same waypoints later. After that, each robot whose next motion is due receives a route order
+(a command to turn and to drive over waypoints), and each driving robot receives the number of
+waypoints to which it may drive. Therefore, no plan is ahead of its robot, and a robot never enters
+a waypoint before all robots that were to use this waypoint earlier have left it.
 """
 
 from __future__ import annotations
@@ -88,8 +89,8 @@ class Guide:
         silent
             Indices of robots that have a session but have sent nothing for 3 s.
         regroups
-            Whether new plans for all robots may be made in this tick, if they are due; if not,
-            they are made in a later tick. Default: True.
+            Whether new plans for all robots may be made in this tick. If false, new plans that are
+            due are made in a later tick. Default: True.
 
         Returns
         -------
@@ -113,8 +114,8 @@ class Guide:
     def forget_strayed(self) -> None:
         """Forget which robots have strayed from their paths.
 
-        A robot reports again that it has strayed if it reads a tag outside its path during a route
-        order.
+        If a robot reads a tag outside its path during a route order, it reports again that it has
+        strayed.
         """
         for robot in self.robots.values():
             robot.astray = None
@@ -179,7 +180,7 @@ class Guide:
             self._regroup_due = True
 
     def _compare(self, robot: RealRobot, state: Message) -> None:
-        """A session has begun: the robot says what it knows."""
+        """Process the state that a robot reports at the beginning of a session."""
         pursuit = robot.pursuit
         if pursuit is None or pursuit.done:
             return
@@ -198,7 +199,7 @@ class Guide:
     # --- late robots ------------------------------------------------------------------------------
 
     def _delay_late(self) -> None:
-        """Shift plans that would run ahead of what robots have confirmed before the next tick."""
+        """Delay plans that require, before the next tick, steps that robots have not confirmed."""
         horizon_us = self.traffic.now_us + TICK_US + 1
         for robot in self.robots.values():
             plan = self.traffic.plan(robot.index)
@@ -210,7 +211,7 @@ class Guide:
                 self.traffic.delay(robot.index, horizon_us - due_us, begun=True)
 
     def _due_us(self, robot: RealRobot, move: PlannedMove) -> int:
-        """When the plan needs something of the robot that it has not confirmed."""
+        """Return when (us) the plan requires a step that the robot has not confirmed."""
         pursuit = robot.pursuit
         if robot.astray is not None:
             return self.traffic.now_us
@@ -225,7 +226,7 @@ class Guide:
         return self._begin_us(robot, move) if not robot.is_present else 1 << 62
 
     def _begin_us(self, robot: RealRobot, move: PlannedMove) -> int:
-        """When a robot has to begin a move: with the turn before it."""
+        """Return when (us) a robot has to begin a move, including the turn before it."""
         pursuit = robot.pursuit
         heading = pursuit.move.heading_rad if pursuit is not None else robot.heading_rad
         return move.start_us - self._turn_us(robot.index, heading, move.heading_rad)
@@ -238,7 +239,7 @@ class Guide:
     # --- orders -----------------------------------------------------------------------------------
 
     def _send_off(self, robot: RealRobot) -> None:
-        """Tell a robot to go when its plan says so, and how far the way is clear."""
+        """Send a robot its next route order when this is due, and grant it all clear waypoints."""
         if robot.astray is not None:
             return
         plan = self.traffic.plan(robot.index)
@@ -290,7 +291,7 @@ class Guide:
             self.counts["given_up"] += 1
 
     def _regroup(self) -> None:
-        """Plan everybody anew from where they are or will stop."""
+        """Make new plans for all robots, from where each robot is or will stop."""
         rests: list[tuple[int, float, int] | None] = []
         cut = []
         for index in range(self.layout.robots):
@@ -323,9 +324,9 @@ class Guide:
             robot.astray = None
 
     def _is_under_way(self, robot: RealRobot) -> bool:
-        """Whether a robot drives where its plan has it, up to the last waypoint granted.
+        """Return whether a robot is driving as planned, up to the last waypoint granted.
 
-        Then it keeps this run, and with it every waypoint that it has yet to pass.
+        Such a robot keeps its run, up to this waypoint, when new plans are made.
         """
         pursuit = robot.pursuit
         if pursuit is None or pursuit.done or robot.astray is not None:
@@ -343,7 +344,7 @@ class Guide:
         return strayed.isdisjoint(pursuit.waypoints[:upto])
 
     def _rest_of_simulated(self, index: int) -> tuple[int, float, int] | None:
-        """Where a simulated robot stops; None if it stands or keeps the clear part of its run."""
+        """Return where and when a simulated robot stops; None if it rests or keeps its run."""
         plan, now_us = self.traffic.plan(index), self.traffic.now_us
         if not plan or plan[0].start_us > now_us or self.traffic.clearance(index):
             return None
@@ -367,7 +368,7 @@ class Guide:
         return stop, pursuit.move.heading_rad, self.traffic.now_us + SETTLE_US
 
     def _cut(self, robot: RealRobot) -> None:
-        """Let a robot end its pursuit at the last waypoint granted."""
+        """Shorten a robot's route order so that it ends at the last waypoint granted."""
         pursuit = robot.pursuit
         assert pursuit is not None
         plan = self.traffic.plan(robot.index)
@@ -380,7 +381,7 @@ class Guide:
 
 
 def _is_same(known: PlannedMove, move: PlannedMove) -> bool:
-    """Whether a move is the known one, whatever delays it has had."""
+    """Return whether a move is the known one, which may have been delayed."""
     return (known.from_waypoint, known.to_waypoint) == (move.from_waypoint, move.to_waypoint) and (
         known.start_us == move.start_us
     )

@@ -1,4 +1,4 @@
-"""The traffic layer of a demonstration, with real robots behind the interface of `Traffic`."""
+"""The traffic layer of a demonstration, which has the interface of `Traffic` but real robots."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class GuidedTraffic(Traffic):
     Parameters
     ----------
     layout
-        The warehouse.
+        The layout of the warehouse.
     robots
-        Names of the real or emulated robots, and their indices in the layout.
+        Index in the layout of each real or emulated robot, by the robot's name.
     tags
         The tag of every waypoint.
     hub
@@ -70,7 +70,7 @@ class GuidedTraffic(Traffic):
         raise TypeError("traffic with real robots cannot be copied")
 
     def _advance_guided(self, until_us: int, ignored: int = 0) -> list[tuple[int, int, int, int]]:
-        """Advance to the next event, as `Traffic.advance`, in step with the real robots."""
+        """Advance to the next event like `Traffic.advance`, synchronised with the real robots."""
         while True:
             limit_us = min(until_us, self._tick_us)
             events = self._advance_core(limit_us, ignored)
@@ -108,7 +108,7 @@ class GuidedTraffic(Traffic):
     def _guide(
         self, now_us: int, messages: list[tuple[int, Message]], silent: frozenset[int]
     ) -> list[tuple[int, Message]]:
-        """Return the orders of a tick; a failure is marked in the journal, so that it can end."""
+        """Return the messages to be sent in a tick; mark a failure in the journal, and raise it."""
         is_left_out = now_us in self._journal.left_out
         if is_left_out:
             self.guide.forget_strayed()

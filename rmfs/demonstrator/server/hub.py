@@ -28,7 +28,7 @@ UNKNOWN_S = 5.0
 
 
 class _Connection:
-    """A socket and what is known of its other end."""
+    """The socket of a client, and the state of the connection."""
 
     def __init__(self, sock: socket.socket, peer: str, secret: bytes) -> None:
         self.socket, self.peer = sock, peer
@@ -42,7 +42,7 @@ class _Connection:
         self.write(self.greeting.welcome())
 
     def write(self, data: bytes) -> None:
-        """Send what can be sent; the rest waits."""
+        """Send as much as the socket accepts, and keep the rest until the next call."""
         self.sent += len(data)
         self._unsent += data
         try:
@@ -134,7 +134,7 @@ class Hub:
         """Queue a message for a client, or drop it if the client has no session.
 
         A dropped message to a robot does no harm: when the robot begins its next session, the
-        server sends the robot's unfinished route order again, in its present state.
+        server sends the robot's unfinished route order again, with the current progress.
         """
         session = self._sessions.get(name)
         if session is not None and session.channel is not None:

@@ -2,9 +2,9 @@
 
 A tick is a step of 50 ms. A server that is restarted with its journal repeats the demonstration as
 fast as it can. It reaches the same state, because it processes the same messages and all its random
-draws are seeded. If an error of the server has ended the demonstration, the error therefore occurs
-again in the same tick. This tick has failed: it is marked in the journal, and its messages can be
-omitted in the repetition. In a failed tick, nothing has been sent to the robots.
+draws are seeded. If an error ended the server, the same error would therefore occur again in the
+same tick of the repetition. Such a failed tick is marked in the journal, and a repetition can omit
+its messages. Nothing has been sent to the robots in a failed tick.
 """
 
 from __future__ import annotations
@@ -34,13 +34,14 @@ class Journal:
     settings
         Settings of the demonstration; a journal with other settings is refused.
     past_failure
-        Whether to omit the messages of the tick that failed last. Default: False.
+        Whether to omit the messages of the last failed tick. Default: False.
 
     Raises
     ------
     InputError
-        If the file is not a journal or belongs to another demonstration, or if `past_failure` is
-        true and the journal contains no failure.
+        If the file is not a journal or belongs to another demonstration. If `past_failure` is true,
+        also if no tick has failed since the last one whose messages were omitted, or if that tick
+        has failed again without its messages.
     """
 
     def __init__(self, path: Path, settings: dict[str, Any], *, past_failure: bool = False) -> None:
@@ -61,7 +62,7 @@ class Journal:
             self._write({"time_us": left_out, "left_out": True})
 
     def heard_at(self, time_us: int) -> Heard:
-        """Return the messages and silent robots of a past tick; none if they are to be omitted."""
+        """Return the messages and silent robots of a past tick; none if they have to be omitted."""
         if time_us in self.left_out:
             return [], frozenset()
         return self._by_time.get(time_us, ([], frozenset()))
@@ -69,11 +70,11 @@ class Journal:
     def note(
         self, time_us: int, messages: list[tuple[int, Message]], silent: frozenset[int]
     ) -> None:
-        """Record the received messages and silent robots of a tick, before it is processed."""
+        """Record the received messages and silent robots of a tick; called before processing it."""
         self._write({"time_us": time_us, "heard": messages, "silent": sorted(silent)})
 
     def note_failure(self, time_us: int, error: str) -> None:
-        """Mark the tick at this time as failed: during it, nothing has been sent to the robots."""
+        """Mark the tick at a time as failed; nothing has been sent to the robots in this tick."""
         self._write({"time_us": time_us, "failed": error})
 
     def _write(self, entry: dict[str, Any]) -> None:
@@ -94,16 +95,16 @@ class Journal:
 
 
 class _Past:
-    """What a journal holds.
+    """The contents of a journal.
 
     Attributes
     ----------
     heard
-        By time (us).
+        Messages and silent robots of each tick, by its time (us).
     left_out
-        Times of ticks to replay without what was heard.
+        Times (us) of the ticks to be replayed without their messages.
     failed
-        Time of the tick that failed last; None if none did after the last one left out.
+        Time (us) of the last failed tick; None if no tick has failed since the last one left out.
     """
 
     def __init__(self, path: Path, head: str) -> None:

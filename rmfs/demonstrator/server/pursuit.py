@@ -1,4 +1,4 @@
-"""The route order by which a robot follows a part of its plan, and the robot's progress."""
+"""Route orders: commands by which robots carry out the moves of their plans."""
 
 from __future__ import annotations
 
@@ -22,27 +22,32 @@ _TURNS = {0: [], 1: ["left"], 2: ["around"], 3: ["right"]}
 class Pursuit:
     """A route order that the server has sent to a robot, and the robot's progress.
 
-    A route order is the command to turn, if necessary, and then to drive straight over waypoints.
+    A route order tells the robot to carry out one move of its plan: to turn, if necessary, and then
+    to drive straight over waypoints.
 
     Attributes
     ----------
     number
         Number of the route order.
     move
-        The part of the plan that the route order carries out, with the times planned when the route
-        order was created. If the robot is late, the times in the plan change, but not these.
+        The move that the route order carries out, with the times planned when the route order was
+        created. If the robot is late, the times in the plan change, but not these.
     heading_before_rad
         Heading of the robot, in rad, before the turn.
     waypoints
-        Waypoints of the straight run, without the one where it starts.
+        Waypoints over which the robot drives, without the first waypoint of the move.
     along_m
-        Distance of each of these waypoints from the start, in m.
+        Distance of each of these waypoints from the first waypoint of the move, in m.
+    seconds
+        Driving time to each of these waypoints, in s, from standstill at the first waypoint.
     passed
         Number of these waypoints that the robot has confirmed.
-    turned, done
-        Whether the robot has turned or need not turn; whether it stands at the end of the run.
+    turned
+        Whether the robot has turned or need not turn.
+    done
+        Whether the robot has completed the route order.
     granted
-        How many of these waypoints the robot may drive to so far; 0 until the robot has turned.
+        Number of these waypoints to which the robot may drive so far; 0 until it has turned.
     troubles
         Number of times the robot has reported trouble since it last confirmed a waypoint.
     """
@@ -69,14 +74,14 @@ class Pursuit:
         return cls(number, move, heading_rad, waypoints, along, seconds, turned=turned)
 
     def next_us(self, move: PlannedMove) -> int:
-        """Return when, in us, the robot is to be at the next waypoint that it has to confirm.
+        """Return the planned time, in us, at the next waypoint that the robot has to confirm.
 
-        If it has confirmed all waypoints, return the planned end of the move.
+        If the robot has confirmed all waypoints, return the planned end of the move.
 
         Parameters
         ----------
         move
-            The part of the plan with its present times.
+            The move with the times that are planned now.
         """
         if self.passed == len(self.waypoints):
             return move.end_us
@@ -84,7 +89,7 @@ class Pursuit:
         return move.start_us + late_us + math.floor(self.seconds[self.passed] * 1e6)
 
     def pass_waypoint(self, waypoint: int) -> bool:
-        """Record that the robot was at a waypoint; return false if this is not on the run."""
+        """Record that the robot was at a waypoint; return False if it is not one of `waypoints`."""
         if waypoint not in self.waypoints:
             return False
         self.turned = True
@@ -97,7 +102,7 @@ class Pursuit:
         del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
 
     def follow(self, move: PlannedMove, layout: Layout, robot: int) -> None:
-        """Replace `move` by a move with other times that ends earlier on the same run."""
+        """Replace `move` by a shortened version; update waypoints, distances and times."""
         self.move = move
         self.waypoints, self.along_m, self.seconds = _course(layout, move, robot)
 
@@ -112,7 +117,7 @@ class Pursuit:
         Parameters
         ----------
         tags
-            Tags of all waypoints.
+            The floor tag of each waypoint of the layout.
         """
         quarters = quarter_turns(self.heading_before_rad, self.move.heading_rad)
         turn = [] if self.turned else _TURNS[quarters]
@@ -132,7 +137,7 @@ class Pursuit:
 def _course(
     layout: Layout, move: PlannedMove, robot: int
 ) -> tuple[list[int], list[float], list[float]]:
-    """Return waypoints, distances (m) and times (s) of a straight run from its start."""
+    """Return the values of `waypoints`, `along_m` and `seconds` for a move (see `Pursuit`)."""
     waypoints = straight_way(layout, move)
     x, y = layout.x_m, layout.y_m
     start = move.from_waypoint
@@ -150,7 +155,7 @@ def quarter_turns(before_rad: float, after_rad: float) -> int:
 
 
 def straight_way(layout: Layout, move: PlannedMove) -> list[int]:
-    """Return the waypoints of a move, which is a straight run, without the one where it starts."""
+    """Return the waypoints of a move, which is straight, without the first one."""
     along = np.array([math.cos(move.heading_rad), math.sin(move.heading_rad)])
     here, way = move.from_waypoint, []
     while here != move.to_waypoint:

@@ -1,4 +1,4 @@
-"""What the server knows about real (physical or emulated) robots, and the check of their floor."""
+"""What the server knows about real (physical or emulated) robots, and a check of their layout."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class RealRobot:
     """What the server knows about a real (physical or emulated) robot.
 
-    An order, here, is the server's message that the robot is to turn and drive (`Pursuit`).
+    Here, an order is a route order: the server's command to turn and drive (`Pursuit`).
 
     Attributes
     ----------
@@ -28,14 +28,14 @@ class RealRobot:
     heading_rad
         Last known or estimated heading, in rad; not updated while an order is in progress.
     pursuit
-        Latest order, in progress or completed. None before the first order; also None after the
-        robot has left its path and received a new plan, until the next order.
+        Latest order, in progress or completed; None before the first order. If the robot has left
+        its path, this is also None from the time of its new plan until the next order.
     is_present
         Whether there is a session with the robot.
     heard_us
         Time of the last message, in microseconds.
     given_up
-        Whether others are planned around the robot because it is silent or in trouble.
+        Whether the other robots are routed around this one because it is silent or in trouble.
     astray
         Waypoint where the robot is after it has left its path; None if it is on its path.
     """
@@ -54,11 +54,12 @@ class RealRobot:
         return self.pursuit is not None and not self.pursuit.done
 
     def heading_at(self, layout: Layout, waypoint: int) -> float:
-        """Return the robot's probable heading, in rad, at a waypoint to which it was not sent.
+        """Return the robot's probable heading, in rad, at a waypoint that is not on its path.
 
-        If a line along x or y leads from the last confirmed waypoint to this one, the robot has
-        probably taken a wrong turn: its heading is the direction of this line. Otherwise, it has
-        probably been pushed aside and has kept the heading that its order gave it.
+        If this waypoint and the last one that the robot has confirmed differ only in x or only in
+        y, the robot has probably taken a wrong turn: its heading is the direction from the
+        confirmed waypoint to this one. Otherwise, the robot has probably been pushed aside and has
+        kept the heading that it had on its path.
         """
         pursuit = self.pursuit
         if pursuit is None:
@@ -75,8 +76,8 @@ class RealRobot:
 def check_floor(layout: Layout, tags: Sequence[str]) -> None:
     """Raise InputError if real robots cannot use a layout.
 
-    There must be no elevators, all edges must be parallel to x or y, and every waypoint must have a
-    tag of its own.
+    The layout must have no elevators, all edges must be parallel to x or y, and each waypoint must
+    have a different tag.
     """
     if layout.elevators:
         raise InputError(f"{layout.name}: elevators cannot be driven by real robots")

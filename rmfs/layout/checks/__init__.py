@@ -24,12 +24,16 @@ CHECKS = (population, occupancy, connection, separation, queue_lists, ways)
 def check(layout: Layout) -> list[Violation]:
     """Return all faults of a layout, those with severity "impossible" first.
 
-    It is checked that there are robots, pick stations and replenishment stations; that all elements
-    are in permitted places; that robots, with and without a pod, can reach and leave every storage
-    location, station and elevator; that robots and pods cannot overlap; and that the conditions
-    W1-W3 of deadlock freedom (docs/safety.md) hold as far as they concern the layout. Among other
-    things, these require that the aisles are strongly connected, that every robot has a place to
-    rest, and that the places of each queue form a chain.
+    A layout without faults has the following properties:
+
+    - There are robots, pick stations and replenishment stations.
+    - All elements are in permitted places.
+    - Robots, with and without a pod, can reach and leave every storage location, station and
+      elevator.
+    - Robots and pods cannot overlap.
+    - The conditions W1-W3 of deadlock freedom (docs/safety.md) hold as far as they concern the
+      layout. Among other things, the aisles are strongly connected, every robot has a place to
+      rest, and the places of each queue form a chain.
     """
     found = [violation for checks in CHECKS for violation in checks(layout)]
     return sorted(found, key=lambda violation: violation.severity != IMPOSSIBLE)
@@ -43,7 +47,7 @@ def refuse(layout: Layout, source: str, *, allow_not_well_formed: bool = False) 
     source
         File or name of the layout, for the message.
     allow_not_well_formed
-        Whether to accept a layout of which all faults have the severity "not well-formed".
+        Whether to accept a layout if all its faults have the severity "not well-formed".
 
     Raises
     ------

@@ -102,7 +102,7 @@ def _loaded(layout: Layout, lost: Mask) -> Iterator[Violation]:
 def _pod_ways(
     layout: Layout, bad: Mask, places: Mask, station: str, words: tuple[str, str]
 ) -> Iterator[Violation]:
-    """Yield the storage locations without a path, or the station if that affects most of them."""
+    """Yield the storage locations in `bad`, or only the station if these are more than half."""
     verb, preposition = words
     if 2 * bad.sum() > places.sum():
         message = (

@@ -59,7 +59,7 @@ def _robots(layout: Layout) -> Iterator[Violation]:
 
 
 def _crowded(layout: Layout, waypoints: NDArray[np.int32], what: str) -> Iterator[Violation]:
-    """Yield the waypoints where several of a kind stand."""
+    """Yield the waypoints at which several pods, or several robots, stand."""
     taken, times = np.unique(waypoints, return_counts=True)
     for waypoint, count in zip(taken[times > 1], times[times > 1], strict=True):
         who = ", ".join(str(i) for i in np.flatnonzero(waypoints == waypoint))

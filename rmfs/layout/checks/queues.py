@@ -1,11 +1,11 @@
-"""Checks that each queue is a chain of places of its own that leads to its head (W3).
+"""Checks that the places of each queue form a chain to its head and are in no other queue (W3).
 
 Condition W3 of deadlock freedom (docs/safety.md) requires that no more robots are sent to a station
-than its queue has places. The traffic layer assigns places one by one, and all other robots wait
-where they are. A short queue therefore suffices for any number of robots, with one exception: if
-queues consist of their stations alone, two robots that go on to each other's station would wait for
-each other forever. Chargers and swap stations are exempt, since robots never go directly from one
-of them to another.
+than its queue has places. The traffic layer assigns the places one by one, and robots without a
+place wait where they are. A short queue therefore suffices for any number of robots, with one
+exception: if two queues consist of their stations alone, and the robot at each of these stations
+has to go to the other one next, the two robots wait for each other forever. Chargers and swap
+stations are exempt, since robots never go directly from one of them to another.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ class Queue:
     head
         The waypoint of the station or elevator.
     places
-        Waypoints from the head to the entrance.
+        Waypoints of the queue, from the head to the entrance.
     of_elevator
-        Whether an elevator is at its head.
+        Whether the head is a waypoint of an elevator.
     is_left
         Whether the station is a charger or swap station; a robot never goes directly from one such
         station to another.
@@ -55,7 +55,7 @@ class Queue:
 
     @property
     def entrance(self) -> int:
-        """The last of the places, where robots enter the queue."""
+        """The last place, at which robots enter the queue."""
         return self.places[-1]
 
 
@@ -83,7 +83,7 @@ def all_queues(layout: Layout) -> list[Queue]:
 
 
 def queue_lists(layout: Layout) -> Iterator[Violation]:
-    """Yield violations: queues that are not chains, are too short, or share places with another."""
+    """Yield violations: queues that are not chains, are too short or share places with others."""
     owner: dict[int, str] = {}
     for queue in all_queues(layout):
         yield from _chain(layout, queue)
@@ -96,7 +96,7 @@ def queue_lists(layout: Layout) -> Iterator[Violation]:
 
 
 def _length(layout: Layout, queue: Queue) -> Iterator[Violation]:
-    """Yield a queue too short for robots that go from station to station."""
+    """Yield a violation if the queue is too short for robots that go from station to station."""
     several = layout.robots > 1 and len(layout.stations) > 1
     if several and not (queue.of_elevator or queue.is_left) and len(queue.places) == 1:
         message = (
@@ -107,7 +107,7 @@ def _length(layout: Layout, queue: Queue) -> Iterator[Violation]:
 
 
 def _chain(layout: Layout, queue: Queue) -> Iterator[Violation]:
-    """Yield faults within one list."""
+    """Yield the faults of one queue."""
     places = queue.places
     if places[0] != queue.head:
         message = f"its queue begins at {waypoint_label(layout, places[0])}, not at itself (W3)"

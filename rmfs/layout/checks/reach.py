@@ -1,4 +1,4 @@
-"""Which waypoints can be reached from which if only some waypoints may be used."""
+"""Reachability between waypoints if only some of the waypoints may be used."""
 
 from __future__ import annotations
 
@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 class Reach:
     """Reachability over edges and elevator rides between allowed waypoints.
 
+    Sets of waypoints are Boolean arrays of shape (N,), where N is the number of waypoints.
+
     Parameters
     ----------
     allowed
-        Waypoints that may be used, shape (N,).
+        Waypoints that may be used.
     """
 
     def __init__(self, layout: Layout, allowed: Mask) -> None:
@@ -33,11 +35,11 @@ class Reach:
         self.allowed = allowed
 
     def forward(self, sources: Mask) -> Mask:
-        """Return the waypoints reachable from an allowed source, including these sources."""
+        """Return the waypoints reachable from allowed sources, including these sources."""
         return _search(self._graph, sources & self.allowed)
 
     def backward(self, goals: Mask) -> Mask:
-        """Return the waypoints from which an allowed goal is reachable, including these goals."""
+        """Return the waypoints from which allowed goals are reachable, including these goals."""
         return _search(self._back, goals & self.allowed)
 
     def components(self) -> NDArray[np.int32]:
@@ -48,11 +50,11 @@ class Reach:
         return labels
 
     def largest(self, counted: Mask) -> Mask:
-        """Return the strongly connected component that has the most waypoints of `counted`.
+        """Return the strongly connected component with the most allowed waypoints of `counted`.
 
         Returns
         -------
-        Which waypoints belong to it, shape (N,); none if no waypoint of `counted` is allowed.
+        The waypoints of this component; none if no waypoint of `counted` is allowed.
         """
         labels = self.components()
         counted = counted & self.allowed
@@ -77,7 +79,7 @@ def leading_to(layout: Layout, tails: NDArray[np.int32], goals: Mask) -> Mask:
 
 
 def _adjacency(layout: Layout, allowed: Mask) -> csr_array:
-    """Return the graph of the edges and elevator rides whose both ends are allowed."""
+    """Return the graph of the edges and elevator rides with two allowed ends."""
     tails, heads = edge_sources(layout), layout.edge_target
     rides = [pair for elevator in layout.elevators for pair in elevator.travel_s]
     if rides:

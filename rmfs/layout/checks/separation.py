@@ -1,10 +1,10 @@
 """Checks that robots and pods do not touch if robots reserve the waypoints of the edges they use.
 
 A robot on an edge reserves both ends of the edge. Reservations therefore keep two robots apart if
-a minimum distance separates any two waypoints, any two edges without a common end, and any edge and
-any waypoint that is not one of its ends (docs/safety.md). This distance is twice the largest radius
-of a robot or pod. Pods are treated as discs, and their radius counts everywhere, since they are
-carried everywhere.
+there is a minimum distance between any two waypoints, between any two edges without a common end,
+and between any edge and any waypoint that is not one of its ends (docs/safety.md). This distance is
+twice the largest radius of a robot or pod. Pods are treated as discs. Their radius counts on all
+edges, since a pod can be carried along any of them.
 """
 
 from __future__ import annotations
@@ -90,7 +90,8 @@ def _undirected(layout: Layout) -> Pairs:
 def _is_wide_grid(layout: Layout, edges: Pairs, needed_m: float) -> bool:
     """Whether all edges join neighbours of one square grid that is wide enough.
 
-    Then whatever has no common end is at least the width of the grid apart.
+    Then edges without a common end, and edges and waypoints that are not their ends, are at least
+    the width of the grid apart.
     """
     if not edges.size:
         return True
@@ -112,7 +113,7 @@ def _is_wide_grid(layout: Layout, edges: Pairs, needed_m: float) -> bool:
 def _beside_edges(
     layout: Layout, points: Points, edges: Pairs, needed_m: float
 ) -> Iterator[Violation]:
-    """Yield waypoints too near to an edge they are no end of."""
+    """Yield waypoints too near to an edge of which they are not an end."""
     if not edges.size:
         return
     tail, head = points[edges[:, 0]], points[edges[:, 1]]

@@ -29,15 +29,15 @@ def assembled(drawing: Drawing, given: Equipment, name: str) -> Layout:
     Parameters
     ----------
     given
-        Parameters in addition to the drawing, such as the number of robots.
+        Parameters that the drawing does not contain, such as the number of robots.
     name
         Name of the layout, if `given` has none.
 
     Raises
     ------
     InputError
-        If a required element is missing, or the number of robots given is smaller than the number
-        drawn or larger than the aisles have room for.
+        If a required element is missing, or if the number of robots in `given` is smaller than the
+        number drawn or larger than the number for which the aisles have room.
     """
     _refuse_incomplete(drawing)
     number = np.full(drawing.ground.shape, -1, dtype=np.int32)

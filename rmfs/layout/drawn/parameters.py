@@ -19,19 +19,21 @@ def _as_generated(key: str) -> Any:
 class Equipment(Strict):
     """Parameters of layouts described cell by cell: name, cell size, robots, pods, stations."""
 
-    name: str = Field("", description="name shown in results; default: that of the file")
-    seed: Amount = Field(0, description="random seed for the places of pods and robots")
+    name: str = Field("", description="name shown in results; if empty, the name of the file")
+    seed: Amount = Field(0, description="random seed for the positions of pods and robots")
     cell_m: Positive = Field(
         1.0, description="distance between the centres of neighbouring cells, m"
     )
     queue_length: Amount = Field(
-        3, description="maximum number of queue places of a station whose queue is not given"
+        3,
+        description="maximum number of queue places that a station gets if its queue is not given",
     )
 
     robots: Count | None = Field(
         None,
-        description="total number of robots; those not drawn start on aisles. Default: the number "
-        "drawn or, if none is drawn, 4 per pick station, as far as there is room",
+        description="total number of robots. Robots that are not drawn start at random aisle "
+        "cells. Default: the number drawn or, if none is drawn, 4 per pick station, but no more "
+        "than there are storage locations or free aisle cells",
     )
     robot_radius_m: Radius = _as_generated("robot_radius_m")
     acceleration_m_s2: Positive = _as_generated("acceleration_m_s2")
@@ -74,14 +76,16 @@ class MapStations(Equipment):
     format: Literal["rmfs-map-stations/1"] = Field(description="version of this format")
     storage: str = Field(
         "",
-        description="signs of the map that stand for storage locations; a cell with such a sign "
-        "but no adjacent aisle becomes an obstacle",
+        description="signs that stand for storage locations in the map; a cell with such a sign "
+        "but without an adjacent aisle cell becomes an obstacle",
     )
     pick_stations: list[StationPlaces] = Field(
         default_factory=list,
         description="pick stations, each as a list of cells [row, column], counted from 0 at the "
-        "top left: the cell of the station, then the cells of its queue up to the entrance",
+        "top left: the cell of the station, then those of its queue, from the station to the "
+        "entrance",
     )
     replenishment_stations: list[StationPlaces] = Field(
-        default_factory=list, description="replenishment stations, in the form of `pick_stations`"
+        default_factory=list,
+        description="replenishment stations, in the same form as `pick_stations`",
     )

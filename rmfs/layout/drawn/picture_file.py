@@ -35,9 +35,9 @@ PICK, REPLENISHMENT = "Pg", "R"
 ARROWS: dict[str, Cell] = {">": (0, 1), "^": (-1, 0), "<": (0, -1), "v": (1, 0)}
 
 SIGNS = {
-    ".": "aisle, both ways",
-    "> < ^ v": "one-way aisle: leads to other aisles only in this direction",
-    "x": "storage location; a share `pod_share` of these have a pod at the start",
+    ".": "two-way aisle",
+    "> < ^ v": "one-way aisle; only in this direction can robots drive to another aisle cell",
+    "x": "storage location; a share `pod_share` of these locations have a pod at the start",
     "X": "storage location with a pod at the start",
     "o": "storage location without a pod at the start",
     "P or g": "pick station",
@@ -46,7 +46,7 @@ SIGNS = {
     "1 ... 9": "place of a queue, numbered from the station; needed instead of `q` where queues "
     "lie side by side",
     "r": "aisle with a robot at the start",
-    "# or @ or blank": "nothing: robots cannot go there",
+    "# or @ or blank": "no waypoint: robots cannot drive there",
 }
 """Meanings of the signs of a picture."""
 
@@ -61,19 +61,19 @@ _GROUND = {
 def read_picture(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()) -> Layout:
     """Read a layout drawn as text.
 
-    An optional TOML head (`PictureHead`) ends with a line `---`; the picture follows, with one sign
-    for each cell (`SIGNS`).
+    The file may begin with a head in TOML (`PictureHead`) that ends with a line `---`. The picture
+    follows, with one character, called a sign, for each cell (`SIGNS`).
 
     Parameters
     ----------
     overrides
-        Pairs of a key, as a list of its parts, and the value that it gets in the head.
+        Pairs of a key, as a list of its parts, and a value, which replaces the value in the head.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or the head or the picture is wrong; for a wrong sign, the
-        message names line and column.
+        If the file cannot be read, or the head or the picture is wrong; if a sign is wrong, the
+        message names its line and column.
     """
     head, first, lines = _split(path)
     given = validate(PictureHead, apply_overrides(head, list(overrides)), str(path))
@@ -85,7 +85,7 @@ def read_picture(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()) ->
 
 
 def _split(path: Path) -> tuple[dict[str, Any], int, list[str]]:
-    """Return the head, and the lines of the picture with the number of the first."""
+    """Return the head, the line number at which the picture begins, and its lines."""
     try:
         text = read_bounded(path, LARGEST_MIB).decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -114,9 +114,9 @@ class _Picture:
     Parameters
     ----------
     path
-        For messages.
+        Path of the file, for messages.
     first
-        Number of the first line in the file.
+        Number of the picture's first line in the file.
     """
 
     def __init__(self, path: Path, first: int, lines: list[str]) -> None:
@@ -128,7 +128,7 @@ class _Picture:
         ]
 
     def drawing(self, queue_length: int) -> Drawing:
-        """Return what is drawn."""
+        """Return the floor that the picture shows."""
         stop_if_any(
             [
                 f"{self._where(cell)}: {sign!r} is not a valid sign; valid: {', '.join(SIGNS)}"

@@ -29,20 +29,20 @@ class ForkError(ValueError):
 def drawn_queue(head: Cell, sign: Callable[[Cell], str], taken: set[Cell]) -> tuple[Cell, ...]:
     """Return the cells of a drawn queue, from the station to the entrance.
 
-    The next place is the neighbour with the next number, or else the only neighbour with the sign
-    `q`.
+    The next place is the neighbour with the next number or, if there is none, the only neighbour
+    with the sign `q`. If there is no such neighbour either, the queue ends.
 
     Parameters
     ----------
     sign
         Function that returns the sign drawn at a cell.
     taken
-        Cells of all stations, and of the queues already read; those of this queue are added.
+        Cells of all stations and of the queues already read; the cells of this queue are added.
 
     Raises
     ------
     ForkError
-        If several neighbours could be next.
+        If several neighbours could be the next place.
     """
     places = [head]
     while True:
@@ -63,7 +63,8 @@ def straight_queue(drawing: Drawing, head: Cell, length: int) -> tuple[Cell, ...
 
     The direction with room for the most places is chosen; ties go to the first of east, north, west
     and south. One-way cells, cells beside storage locations and cells with robots are not used. If
-    the station has only one adjacent aisle cell, no queue is laid, since this cell is the way out.
+    the station has only one adjacent aisle cell, no queue is laid, since robots need this cell to
+    leave the station.
 
     Parameters
     ----------
@@ -75,7 +76,7 @@ def straight_queue(drawing: Drawing, head: Cell, length: int) -> tuple[Cell, ...
 
     Returns
     -------
-    The cells from the station, which is included, to the entrance.
+    The cells from the station to the entrance, including both.
     """
     taken = set(drawing.robots)
 

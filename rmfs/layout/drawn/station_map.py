@@ -34,14 +34,13 @@ def read_station_map(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()
     Parameters
     ----------
     overrides
-        Pairs of a key, as a list of its parts, and the value that it gets instead of the one in the
-        file of stations.
+        Pairs of a key, as a list of its parts, and a value, which replaces the value in the file of
+        stations.
 
     Raises
     ------
     InputError
-        If one of the two files cannot be read or is wrong; the message names the wrong cells, at
-        most 10.
+        If one of the two files cannot be read or is wrong; the message names up to 10 wrong cells.
     """
     beside = stations_file(path)
     given = validate(MapStations, apply_overrides(read_toml(beside), list(overrides)), str(beside))
@@ -62,7 +61,10 @@ def read_station_map(path: Path, overrides: Sequence[tuple[list[str], Any]] = ()
 
 
 def _floor(rows: list[str], storage: str) -> Drawing:
-    """Return the aisles and storage locations of a map; shelves need an adjacent aisle."""
+    """Return the aisles and storage locations of a map.
+
+    Shelves without an adjacent aisle become obstacles.
+    """
     signs = np.array([list(row) for row in rows])
     shelf = np.isin(signs, list(storage))
     free = ~shelf & ~np.isin(signs, list(BLOCKED))

@@ -15,7 +15,7 @@ FORMAT = "rmfs-layout-explicit/1"
 
 
 class ExplicitTier(Strict):
-    """A floor: its extents in x and y, and its height above the ground, in m."""
+    """Size of a floor, and its height above the ground."""
 
     length_m: Positive = Field(description="extent in x, in m")
     width_m: Positive = Field(description="extent in y, in m")
@@ -25,41 +25,47 @@ class ExplicitTier(Strict):
 class ExplicitWaypoint(Strict):
     """A waypoint, and the waypoints of its tier that can be reached directly from it."""
 
-    x_m: float = Field(description="position in m, to the right")
-    y_m: float = Field(description="position in m, upwards")
-    tier: Index = Field(0, description="tier of the waypoint")
+    x_m: float = Field(description="x coordinate in m; x increases to the right")
+    y_m: float = Field(description="y coordinate in m; y increases upwards")
+    tier: Index = Field(0, description="index of the waypoint's tier")
     to: list[Index] = Field(
-        default_factory=list, description="waypoints to which directed edges lead"
+        default_factory=list, description="waypoints to which an edge leads from this waypoint"
     )
-    storage: bool = Field(False, description="whether a pod may be stored there")
+    storage: bool = Field(False, description="whether a pod may be stored here")
     queue: bool = Field(
         False,
-        description="whether it belongs to a queue zone (the places of a queue and the way out) "
-        "without being a place of the queue; queue places need not be marked",
+        description="whether the waypoint belongs to a queue zone; needed only for waypoints on "
+        "the way out, since the places of a queue always belong to its zone",
     )
 
 
 class ExplicitPickStation(Strict):
-    """A pick station; `queue` lists the waypoints of its queue, from station to entrance."""
+    """A pick station with its queue."""
 
     queue: list[Index] = Field(
-        min_length=1, description="waypoints from the station to the entrance of its queue"
+        min_length=1,
+        description="waypoints of the queue, from the station (included) to the entrance",
     )
     radius_m: Positive = Field(description="radius of the station, m")
     order_slots: Some = Field(description="maximum number of open orders")
-    unit_transfer_s: Seconds = Field(description="time in s for which a unit occupies the station")
-    unit_pick_s: Seconds = Field(description="time in s for which a unit occupies the robot")
+    unit_transfer_s: Seconds = Field(
+        description="time in s for which a unit keeps the station busy"
+    )
+    unit_pick_s: Seconds = Field(
+        description="time in s for which a unit keeps the robot at the station"
+    )
     activation: Count = Field(
-        description="rank of the station, from 1, in the sequence in which stations of its kind "
-        "are switched on"
+        description="rank of the station, counted from 1, in the order in which the stations of "
+        "its kind are switched on"
     )
 
 
 class ExplicitReplenishmentStation(Strict):
-    """A replenishment station; `queue` as for pick stations."""
+    """A replenishment station with its queue."""
 
     queue: list[Index] = Field(
-        min_length=1, description="waypoints from the station to the entrance of its queue"
+        min_length=1,
+        description="waypoints of the queue, from the station (included) to the entrance",
     )
     radius_m: Positive = Field(description="radius of the station, m")
     capacity: Space = Field(
@@ -67,55 +73,58 @@ class ExplicitReplenishmentStation(Strict):
         "at any time"
     )
     bundle_transfer_s: Seconds = Field(
-        description="time in s for which a bundle occupies robot and station"
+        description="time in s for which a bundle keeps the station and the robot busy"
     )
     activation: Count = Field(
-        description="rank of the station, from 1, in the sequence in which stations of its kind "
-        "are switched on"
+        description="rank of the station, counted from 1, in the order in which the stations of "
+        "its kind are switched on"
     )
 
 
 class ExplicitOtherStation(Strict):
-    """A station neither for picking nor for replenishment; `queue` as for pick stations."""
+    """A station of another kind, with its queue."""
 
     queue: list[Index] = Field(
-        min_length=1, description="waypoints from the station to the entrance of its queue"
+        min_length=1,
+        description="waypoints of the queue, from the station (included) to the entrance",
     )
     radius_m: Positive = Field(description="radius of the station, m")
 
 
 class ExplicitOtherStations(Strict):
-    """A kind of station other than pick and replenishment: class, parameters and stations."""
+    """The stations of one further kind, and the class that defines this kind."""
 
     kind: str = Field(
         description="class of the stations, as `module:Class`, `path/to/file.py:Class` or a "
         "registered name such as `charger`"
     )
-    parameters: dict[str, Any] = Field(default_factory=dict, description="parameters of the class")
-    stations: list[ExplicitOtherStation] = Field(description="the stations")
+    parameters: dict[str, Any] = Field(default_factory=dict, description="parameters of this class")
+    stations: list[ExplicitOtherStation] = Field(description="stations of this kind")
 
 
 class ExplicitRide(Strict):
     """An elevator ride from one boarding waypoint to another."""
 
-    origin: Index = Field(description="boarding waypoint")
-    destination: Index = Field(description="boarding waypoint on another tier")
+    origin: Index = Field(description="boarding waypoint at which the ride begins")
+    destination: Index = Field(
+        description="boarding waypoint on another tier, at which the ride ends"
+    )
     travel_s: Seconds = Field(description="duration of the ride in s")
 
 
 class ExplicitElevator(Strict):
-    """An elevator; on each tier that it serves, a queue that begins with the boarding waypoint."""
+    """An elevator: its rides, and its queue on each tier that it serves."""
 
     queues: list[Annotated[list[Index], Field(min_length=1)]] = Field(
         min_length=2,
-        description="for each tier that it serves, waypoints from the boarding waypoint to the "
-        "entrance of its queue",
+        description="for each tier that the elevator serves, the waypoints of its queue, from "
+        "the boarding waypoint (included) to the entrance",
     )
-    rides: list[ExplicitRide] = Field(description="durations of the rides")
+    rides: list[ExplicitRide] = Field(description="possible rides, with their durations")
 
 
 class ExplicitRobotKind(Strict):
-    """Size and dynamics of robots."""
+    """A kind of robot: its size, speeds and times."""
 
     radius_m: Positive = Field(description="radius of a robot, m")
     acceleration_m_s2: Rate = Field(description="acceleration, m/s2")
@@ -126,21 +135,21 @@ class ExplicitRobotKind(Strict):
 
 
 class ExplicitPod(Strict):
-    """A pod and where it stands at the start."""
+    """A pod, and where it is at the start."""
 
-    waypoint: Index = Field(description="storage location where it stands")
+    waypoint: Index = Field(description="storage location of the pod")
     capacity: Space = Field(description="capacity in space units")
 
 
 class ExplicitRobot(Strict):
-    """A robot and where it stands at the start."""
+    """A robot, and where it is at the start."""
 
-    waypoint: Index = Field(description="where it stands")
+    waypoint: Index = Field(description="waypoint of the robot")
     heading_rad: float = Field(
         0.0,
         description="heading in rad: 0 is the +x direction, and positive angles turn towards +y",
     )
-    kind: Index = Field(0, description="index of its robot kind")
+    kind: Index = Field(0, description="index of the robot's kind in `robot_kinds`")
 
 
 class ExplicitLayout(Strict):
@@ -154,13 +163,13 @@ class ExplicitLayout(Strict):
     )
     robot_kinds: list[ExplicitRobotKind] = Field(min_length=1, description="kinds of robots")
     pick_stations: list[ExplicitPickStation] = Field(
-        default_factory=list, description="stations where units are picked"
+        default_factory=list, description="stations at which units are picked"
     )
     replenishment_stations: list[ExplicitReplenishmentStation] = Field(
-        default_factory=list, description="stations where bundles are put into pods"
+        default_factory=list, description="stations at which bundles are put into pods"
     )
     other_stations: dict[str, ExplicitOtherStations] = Field(
-        default_factory=dict, description="stations of further kinds, by name of the kind"
+        default_factory=dict, description="stations of other kinds, by name of the kind"
     )
     elevators: list[ExplicitElevator] = Field(
         default_factory=list, description="elevators between tiers"

@@ -1,6 +1,6 @@
-"""Assembles the layout of the whole warehouse from the tiles of a tier.
+"""Assembles the layout of the whole warehouse from the tiles of one tier.
 
-All tiers have the same tiles; waypoints are numbered tier by tier, row by row.
+All tiers have the same tiles; waypoints are numbered tier by tier and, within a tier, row by row.
 """
 
 from __future__ import annotations

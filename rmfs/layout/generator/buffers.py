@@ -1,8 +1,8 @@
 """The buffer of a station or elevator: parallel segments that form a serpentine.
 
-RAWSim-O default layout: `entry_exit_distance + 1` segments of `buffer_width` tiles, perpendicular
-to the edge of the hall. The first segment begins at the entrance, and the last one ends at the
-exit. The station is at that end of the last segment which is farthest from the hall.
+As in RAWSim-O's default layout, a buffer has `entry_exit_distance + 1` segments of `buffer_width`
+tiles, perpendicular to the edge of the hall. The first segment begins at the entrance, and the last
+one ends at the exit. The station is on the last segment, on the tile farthest from the hall.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class Buffer:
     tiles
         All tiles of the zone: the queue, and the way out from the station to the exit.
     entrances
-        Edges that lead from the hall into the zone: one into the first segment, one into the third,
-        and so on.
+        Edges that lead from the hall into the zone: one each into the first, third, fifth ...
+        segment.
     steps
         All directed edges that begin inside the zone.
     """

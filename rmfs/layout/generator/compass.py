@@ -12,7 +12,7 @@ Tile = tuple[int, int]
 
 
 class Direction(IntEnum):
-    """Direction of travel; the number of the opposite direction is greater by 2, modulo 4."""
+    """Direction of travel; the numbers of opposite directions differ by 2."""
 
     NORTH = 0
     EAST = 1

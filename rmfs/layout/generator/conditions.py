@@ -1,7 +1,8 @@
-"""Conditions between layout parameters whose values are valid individually.
+"""Conditions that concern several layout parameters together.
 
-Every condition names the keys it reads, so that it is skipped when one of them is already known to
-be wrong. It returns a list of errors, each a sentence that starts with the key to change.
+`RULES` lists each condition with the keys that it reads. A condition is skipped if the value of one
+of these keys is already known to be wrong. Otherwise, it returns a list of errors, each beginning
+with the key to change.
 """
 
 from __future__ import annotations

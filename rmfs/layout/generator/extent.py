@@ -1,7 +1,7 @@
 """Dimensions of a tier: the storage rectangle and what each side adds to it.
 
-RAWSim-O default layout: tiles of 1 m x 1 m; the storage rectangle (blocks, aisles, ring road) lies
-in the middle, and each side with stations or elevators adds a hall and a buffer zone.
+As in RAWSim-O's default layout, tiles measure 1 m x 1 m. The storage rectangle (blocks, aisles and
+ring road) lies in the middle; each side with stations or elevators adds a hall and a buffer zone.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ class Extent:
     height, width
         Rows and columns of the storage rectangle, ring road included.
     margin
-        Distance from the storage rectangle to the edge of the tier on each side: the width of hall
-        and buffer zone together, or 0 without them.
+        For each side, the distance from the storage rectangle to the edge of the tier: the width of
+        hall and buffer zone together, or 0 if the side has neither.
     """
 
     height: int
@@ -71,7 +71,7 @@ def aisles_at(parameters: LayoutParameters, side: Direction) -> int:
 
 
 def block_at(parameters: LayoutParameters, side: Direction) -> int:
-    """Return the extent of a storage block parallel to a side of the tier, in tiles."""
+    """Return the length of a storage block, in tiles, measured parallel to a side of the tier."""
     across = side in (Direction.EAST, Direction.WEST)
     return BLOCK_DEPTH if across else parameters.block_length
 

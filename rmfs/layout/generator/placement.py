@@ -16,20 +16,20 @@ PODS, ROBOTS = 0, 1
 
 
 def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> NDArray[np.int32]:
-    """Draw the initial storage locations of a tier's pods.
+    """Choose at random the storage locations of a tier's pods at the start.
 
-    They are drawn from `places`, uniformly, without repetition. Their number is `share` times the
-    number of places, rounded down.
+    They are drawn from `places`, uniformly and without replacement. Their number is `share` times
+    the number of places, rounded down.
     """
     count = math.floor(share * len(places) + 1e-9)
     return _draw(places, count, seed, PODS, tier)
 
 
 def draw_robots(tiles: NDArray[np.int32], count: int, seed: int, tier: int) -> NDArray[np.int32]:
-    """Draw the initial waypoints of a tier's robots.
+    """Choose at random the waypoints of a tier's robots at the start.
 
-    From the road waypoints `tiles`, `count` are drawn, uniformly, without repetition. With the same
-    seed, a greater `count` only adds waypoints to those drawn for a smaller one.
+    `count` waypoints are drawn from the road waypoints `tiles`, uniformly and without replacement.
+    With the same seed, a greater `count` only adds waypoints to those drawn for a smaller one.
     """
     return _draw(tiles, count, seed, ROBOTS, tier)
 

@@ -1,8 +1,9 @@
-"""Stations within the storage area: pockets beside an aisle, each in place of a storage location.
+"""Stations within the storage area, in pockets.
 
-The pockets are spread evenly over the blocks, and the stations of each kind evenly over the
-pockets. Robots enter a pocket from the aisle (or ring road) beside it and return to the same tile.
-A pocket leads nowhere else, so that no robot drives through it.
+A pocket is a tile beside an aisle, in place of a storage location. The pockets are spread evenly
+over the blocks, and the stations of each kind evenly over the pockets. Robots enter a pocket from
+the tile of the aisle (or ring road) beside it and return to that tile. A pocket leads nowhere else,
+so no robot drives through it.
 """
 
 from __future__ import annotations
@@ -44,7 +45,9 @@ class Pocket:
 
 
 def pockets(parameters: LayoutParameters, kinds: NDArray[np.int8]) -> list[Pocket]:
-    """Return the stations within the storage area of a tier; none if they outnumber the blocks.
+    """Return the stations within the storage area of a tier.
+
+    If more such stations are wanted than there are blocks, the list is empty.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
-"""Where stations and elevators stand along the sides of a tier.
+"""The positions of stations and elevators along the sides of a tier.
 
-RAWSim-O default layout: robots can leave the buffer of a station only opposite an aisle that can be
-entered from that side. On each side of a tier, stations and elevators take the possible exits in
-the middle, one each. From north to south, or from west to east, pick stations come first, then
-replenishment stations, stations of other kinds, and elevators.
+As in RAWSim-O's default layout, the exit of a buffer must be opposite an aisle that robots can
+enter from the buffer's side of the tier. Each station or elevator takes one of these possible
+exits; on each side, the exits nearest the middle are used. From north to south, or from west to
+east, pick stations come first, then replenishment stations, stations of other kinds, and elevators.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def _towards_low_end(parameters: LayoutParameters, side: Direction) -> bool:
 
 
 def _possible_exits(parameters: LayoutParameters, side: Direction) -> range:
-    """Return the places opposite aisles that run inward (two-directional: all that have room)."""
+    """Return the positions opposite aisles that robots can enter and that are far enough apart."""
     aisles, width = aisles_at(parameters, side), lanes(parameters)
     pitch = block_at(parameters, side) + width
     first = RING_WIDTH + block_at(parameters, side)

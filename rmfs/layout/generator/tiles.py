@@ -34,9 +34,9 @@ ROAD = (Kind.ROW_AISLE, Kind.COLUMN_AISLE, Kind.CROSSING, Kind.RING, Kind.HALL)
 
 
 def tile_kinds(parameters: LayoutParameters) -> NDArray[np.int8]:
-    """Return the kind of each tile of a tier, shape (rows, columns), without buffers and pockets.
+    """Return the kind of each tile of a tier, shape (rows, columns), before buffers are added.
 
-    Tiles where buffers will lie are `NOTHING`; tiles where pockets will lie are `STORAGE`.
+    Tiles at which buffers are added later are `NOTHING`; those of later pockets are `STORAGE`.
     """
     size = extent(parameters)
     kinds = np.full((size.rows, size.columns), Kind.NOTHING, dtype=np.int8)

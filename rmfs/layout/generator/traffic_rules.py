@@ -1,4 +1,4 @@
-"""Where a robot may go from each tile.
+"""The neighbouring tiles to which a robot may drive from each tile.
 
 One-way traffic follows the rule of RAWSim-O's default layout. Rows and columns of tiles are counted
 from 0 at the north-west corner of the ring road. In aisles, on the ring road and across halls, even
@@ -77,13 +77,13 @@ class TrafficRules:
         return self._parameters.two_directional_aisles
 
     def _from_ring(self, tile: Tile) -> set[Direction]:
-        """Follow the ring, or turn into storage locations, lanes and aisles that run that way."""
+        """Return the directions along the ring and into storage locations, lanes and aisles."""
         flows = {self._along_row(tile), self._along_column(tile)}
         storage = {d for d in Direction if self._kind(d.step(tile)) == Kind.STORAGE}
         return flows | storage
 
     def _from_hall(self, tile: Tile) -> set[Direction]:
-        """Follow the lane across the hall and, where there is one, the line along the hall."""
+        """Return the directions across the hall and, if a lane runs along it, along the hall."""
         row, column = tile[0] - self._size.top, tile[1] - self._size.left
         flows = set()
         if 0 <= row < self._size.height:
@@ -103,12 +103,12 @@ class TrafficRules:
         return flows
 
     def _has_line(self, beyond: int) -> bool:
-        """Whether traffic runs along the hall this many tiles outside the ring road."""
+        """Whether a lane runs along the hall this many tiles outside the ring road."""
         highway = self._parameters.hall_pattern == "highway"
         return highway or self._parameters.hall_width - beyond < LOOP_LINES
 
     def _line(self, with_ring: Direction, position: int, length: int) -> Direction:
-        """Return the direction of a line: they alternate, the outermost runs with the ring."""
+        """Return the direction of a lane along a hall; the outermost lane runs with the ring."""
         inner = (self._parameters.hall_width - _beyond(position, length)) % 2
         return self._sense(with_ring.opposite if inner else with_ring)
 
@@ -121,7 +121,7 @@ class TrafficRules:
         return self._sense(Direction.NORTH if north else Direction.SOUTH)
 
     def _sense(self, direction: Direction) -> Direction:
-        """Return the direction for a counter-clockwise ring, otherwise the opposite."""
+        """Return `direction` if the ring is counter-clockwise, otherwise the opposite one."""
         return direction if self._parameters.counter_clockwise_ring else direction.opposite
 
     def _kind(self, tile: Tile) -> Kind:

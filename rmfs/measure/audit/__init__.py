@@ -1,7 +1,8 @@
 """The audit of a run: whether the contents of its files are possible and consistent.
 
-It reads only the run folder and is independent of the simulation: motion is verified by the trace
-checker, and the events are checked against each other. `rmfs check RUN` prints the findings.
+The audit reads only the run folder and is independent of the simulation. The trace checker verifies
+the motion, and events are compared with each other, with the motion and with the tables. The
+command `rmfs check RUN` prints the findings.
 """
 
 from __future__ import annotations
@@ -42,9 +43,10 @@ def audit(run: RunFolder) -> Audit:
 
 
 def _finished_us(run: RunFolder, layout: Layout, end_us: int) -> int:
-    """Return the time by whose picks stations have finished before the end, in us; -1 if unknown.
+    """Return a time (us) such that all picks begun before it were finished at the end of the run.
 
-    It is unknown if pickers have times of their own, or orders wait for packing.
+    The result is -1 (unknown) if pickers have times of their own, if orders may wait for packing,
+    or if there are no pick stations.
     """
     varies = run.footprint[["picker_busy_share", "station_blocked_share"]].notna()
     if varies.any() or not layout.pick_stations:

@@ -1,4 +1,4 @@
-"""Audit of bundles, from arrival to storage, and of the units for which pods are brought."""
+"""Audit of bundles, from arrival to storage, and of the binding of units to pods."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ HAIR = 1e-6
 
 
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
-    """Check that the events of a bundle (arrival, assignment, storage) agree and are in this order.
+    """Check that each bundle first arrives, is then assigned and then stored, at most once each.
 
-    Also checks that the bundles assigned to a replenishment station and not yet stored never exceed
-    its capacity.
+    The events of a bundle must agree on its SKU, units, pod and station. The bundles that are
+    assigned to a replenishment station and not yet stored must not exceed the station's capacity.
     """
     steps = rows.of_kind(*STEPS)
     order = np.lexsort((steps.number, steps.order))
@@ -68,7 +68,7 @@ def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
 
 
 def check_bound(rows: Rows) -> Chapter:
-    """Check that every unit is picked from a pod that was brought for it."""
+    """Check that every picked unit had been bound to its pod, and not released since."""
     kinds = (Happening.UNITS_BOUND, Happening.UNITS_UNBOUND, Happening.UNIT_PICKED)
     mine = rows.of_kind(*kinds)
     units = np.where(mine.kind == Happening.UNITS_BOUND, mine.units, -mine.units).astype(np.float64)

@@ -33,7 +33,7 @@ class _Orders:
         self.completed = 0
 
     def follow(self) -> None:
-        """Look at one event after the other."""
+        """Process the events one after another."""
         rows = self.rows
         columns = (rows.kind, rows.order, rows.station, rows.sku, rows.units, rows.time_us)
         told = zip(*(column.tolist() for column in columns), strict=True)
@@ -90,17 +90,19 @@ class _Orders:
 
 
 def check(rows: Rows, finished_us: int = -1) -> Chapter:
-    """Check that no order gets too many units, or any before its arrival or after its end.
+    """Check that orders receive exactly the units ordered.
 
-    Also checks that a completed order has got all its units, and that an order with all its units
-    is completed.
+    An order must not receive more units than ordered, nor any units before its arrival or after its
+    completion or cancellation. A completed order must have received all its units, and an order
+    that has received all its units must be completed.
 
     Parameters
     ----------
     rows
         All events of the run.
     finished_us
-        Pick stations have finished what was picked by this time, in microseconds; -1 if unknown.
+        All picks begun before this time (us) were finished at the end of the run. Only orders whose
+        last unit was picked before this time must therefore be completed. -1 if unknown.
     """
     orders = _Orders(rows.of_kind(*KINDS))
     orders.follow()

@@ -1,4 +1,4 @@
-"""The findings of an audit, by chapter."""
+"""The result of an audit, divided into chapters."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Chapter:
     name
         Name of the part: `stock`, `orders`, ...
     told
-        What was examined, in words.
+        Text that states what was examined, such as numbers of orders.
     faults
         One line per fault; empty if there are none.
     """
@@ -52,7 +52,7 @@ class Audit:
         return self.motion.ok and not any(chapter.faults for chapter in self.chapters)
 
     def summary(self) -> str:
-        """Return the result as text: motion and each chapter, with the first faults of each."""
+        """Return the result as text: for the motion and each chapter, `ok` or the first faults."""
         lines = [f"motion: {self.motion.summary(SHOWN)}"]
         for chapter in self.chapters:
             if not chapter.faults:

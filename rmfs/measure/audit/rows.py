@@ -1,4 +1,4 @@
-"""The events of a run as arrays, from which those of some kinds can be selected."""
+"""The events of a run as arrays; events can be selected by kind."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Rows:
 
     @classmethod
     def of(cls, events: pd.DataFrame) -> Rows:
-        """Create the rows from all events of a run, in chronological order."""
+        """Create the rows from the table of all events of a run, in chronological order."""
         numbers = {name: number for number, name in enumerate(KINDS)}
         kind = np.asarray(events["kind"].map(numbers), np.int64)
         names = ("time_us", "robot", "pod", "station", "order", "sku", "units")
@@ -56,16 +56,24 @@ class Rows:
         return Rows(*(getattr(self, name)[which] for name in self.__slots__))
 
     def of_kind(self, *kinds: Happening) -> Rows:
-        """Return the events of some kinds."""
+        """Return the events of the given kinds."""
         return self.taken(np.isin(self.kind, kinds))
 
     def tell(self, row: int, what: str) -> str:
-        """Return a line of text on the faulty event at index `row`; `what` describes the fault."""
+        """Return a line of text that states the event at index `row` and its fault, `what`."""
         kind = KINDS[int(self.kind[row])]
         return f"{self.time_us[row] / 1e6:.6f} s, row {self.number[row]} ({kind}): {what}"
 
     def lines(self, wrong: NDArray[np.bool_], what: str) -> list[str]:
-        """Return one line per faulty event, in order of row numbers."""
+        """Return a line of text for each event that is marked as wrong, in order of row numbers.
+
+        Parameters
+        ----------
+        wrong
+            Whether each event is wrong, shape (E,).
+        what
+            Description of the fault.
+        """
         rows = np.flatnonzero(wrong)
         return [
             self.tell(int(row), what) for row in rows[np.argsort(self.number[rows], kind="stable")]
@@ -80,15 +88,15 @@ def running(
     Parameters
     ----------
     groups
-        Arrays of keys; changes that are equal in all keys form a group.
+        Arrays with one key per change. Changes that have the same keys in all arrays form a group.
     change
         The changes, in chronological order.
 
     Returns
     -------
     tuple
-        A permutation that sorts the changes by group and, in this sorted order, the sum of each
-        change and all earlier ones of its group.
+        A permutation that sorts the changes by group, and the cumulative sums in this sorted order:
+        each is the sum of a change and all earlier changes of its group.
     """
     order = np.lexsort(groups[::-1])
     total = np.cumsum(change[order])

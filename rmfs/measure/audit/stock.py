@@ -1,4 +1,4 @@
-"""Audit of stock: only units on a pod are picked from it, and no pod exceeds its capacity."""
+"""Audit of stock: whether pods hold the units picked from them and keep within their capacity."""
 
 from __future__ import annotations
 
@@ -22,12 +22,13 @@ HAIR = 1e-6
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame, pods: pd.DataFrame) -> Chapter:
     """Check the stock on pods over time, and the final stock.
 
-    A pod must hold every unit that is picked from it, and must not exceed its capacity.
+    A pod must hold every unit that is picked from it, and must not exceed its capacity. The final
+    stock in the tables must agree with the events.
 
     Parameters
     ----------
     skus, pods
-        The tables of the run, which contain the final stock.
+        The tables `skus` and `pods` of the run, which contain the final stock.
     """
     moved = rows.of_kind(Happening.STOCK, Happening.BUNDLE_STORED, Happening.UNIT_PICKED)
     named = (moved.pod >= 0) & (moved.sku >= 0) & (moved.units > 0)

@@ -1,4 +1,4 @@
-"""Audit of totals: figures of a run, recounted from its events."""
+"""Audit of totals: figures in the tables of a run, compared with its events."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ COUNTED = {
 def check(
     rows: Rows, footprint: pd.Series, orders: pd.DataFrame, stations: pd.DataFrame
 ) -> Chapter:
-    """Compare figures in the tables with the events."""
+    """Check that counts and completion times in the tables agree with the events."""
     begin_us = round(float(footprint["warmup_s"]) * 1e6)
     measured = rows.taken(rows.time_us >= begin_us)
     faults = []

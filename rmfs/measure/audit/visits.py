@@ -21,7 +21,7 @@ WHERE = "this robot and pod are not visiting this station at this time"
 
 
 def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chapter:
-    """Check that units and bundles are handled only during visits of their pods to the stations.
+    """Check that units are picked, and bundles stored, only while the pod visits the station.
 
     Also checks that visits to the same station do not overlap, and that robot and pod stand
     at the station throughout each visit.
@@ -55,7 +55,7 @@ def check(layout: Layout, rows: Rows, motion: pd.DataFrame, end_us: int) -> Chap
 
 
 def _at_work(rows: Rows, visits: Rows, starts: NDArray[np.bool_]) -> list[str]:
-    """Units are picked, and bundles stored, in visits of that station, robot and pod."""
+    """Check that units are picked, and bundles stored, during a visit of this robot and pod."""
     done = rows.of_kind(Happening.UNIT_PICKED, Happening.BUNDLE_STORED)
     if not len(visits):
         return done.lines(np.ones(len(done), np.bool_), WHERE)
@@ -74,7 +74,7 @@ def _at_work(rows: Rows, visits: Rows, starts: NDArray[np.bool_]) -> list[str]:
 def _standing(
     layout: Layout, visits: Rows, until_us: np.ndarray, motion: pd.DataFrame
 ) -> list[str]:
-    """During a visit the robot stands at the station, with the pod if there is one."""
+    """Check that the robot stands at the station during each visit, with the pod if any."""
     waypoints = np.array([station.waypoint for station in layout.stations], np.int64)
     robot, t0, t1 = (motion[name].to_numpy(np.int64) for name in ("robot", "t0_us", "t1_us"))
     place, kind, pod = (motion[name].to_numpy(np.int64) for name in ("from_wp", "kind", "pod"))

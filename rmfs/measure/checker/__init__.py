@@ -1,14 +1,15 @@
 """The independent trace checker, which proves that all motion in a trace was safe.
 
-It reads a layout and a trace and shares neither code nor concepts with the planner: it knows
-positions over time, not reservations. From the trace it reconstructs the position of every robot at
-every moment, as pieces of motion with constant acceleration. Without sampling, it proves that
+The checker reads a layout and a trace, and shares neither code nor concepts with the planner: it
+uses positions over time, not reservations. From the trace, it reconstructs the position of every
+robot at every moment, as pieces of motion with constant acceleration. Violations are reported
+as findings. If there are none, the checker has proven, without sampling, that
 
 * the motion of each robot has no gaps or jumps, respects the robot's kinematic limits, and
   follows existing edges and elevators (`continuity`);
-* no two robots on a tier overlap, where robots are discs, and a robot that carries a larger pod is
-  as large as the pod (`separation`, which uses `sweep` to find pairs that come close, and
-  `distance` to prove that these do not come too close);
+* no two robots on a tier overlap; a robot counts as a disc with its own radius or, if it carries a
+  larger pod, with the radius of the pod (`separation`, which uses `sweep` to find pairs of pieces
+  that are close, and `distance` to prove whether they come too close);
 * each pod is always on one robot or at one place, no two pods share a place, and no carried pod
   overlaps a stored one (`pods`);
 * no queue place and no elevator is used by two robots at the same time (`occupancy`).
@@ -49,13 +50,13 @@ def check(
         The trace's columns by name: arrays of equal length or a pandas frame.
     until_us
         End of the trace in microseconds; up to then, the trace must cover every robot. A motion
-        that is in progress at the end may be recorded in full or cut off there. Default: the start
-        of the last motion.
+        that is in progress at the end may be recorded in full or cut off there. Default: the time
+        at which the last motion starts.
     slow
         All periods in which a robot is limited to a share of its top speed; at all other times,
-        its limit is its full top speed. Default: the periods are unknown, and the limit of each
-        straight run is the top speed that the trace states for it (if any), which must not exceed
-        that of the robot.
+        its limit is its full top speed. Default: the periods are unknown. Each straight run is then
+        limited to the top speed that the trace states for it, which must not exceed that of the
+        robot; if the trace states none, the limit is the robot's full top speed.
 
     Raises
     ------

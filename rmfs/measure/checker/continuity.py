@@ -95,7 +95,11 @@ def _gaps(trace: Trace) -> list[Finding]:
 
 
 def _jumps(layout: Layout, trace: Trace) -> list[Finding]:
-    """Check that each row starts where the previous one ends, the first where the layout says."""
+    """Check that each row starts where the robot's previous row ends.
+
+    The first row of a robot must start at its initial waypoint in the layout. Robots that do not
+    drive must remain at their waypoints.
+    """
     before = np.asarray(layout.robot_waypoint)[trace.robot].astype(np.int64)
     before[1:][trace.follows] = trace.to_wp[:-1][trace.follows]
     moved = np.hypot(
@@ -111,9 +115,9 @@ def _jumps(layout: Layout, trace: Trace) -> list[Finding]:
 
 
 def _headings(layout: Layout, trace: Trace) -> list[Finding]:
-    """Check that headings change only in turns, and that robots drive in their heading.
+    """Check that headings change only in turns, and that robots drive in the direction they head.
 
-    A guided robot drives from one waypoint to another or turns at one.
+    A guided robot either drives from one waypoint to another or turns at a waypoint.
     """
     before = np.asarray(layout.robot_heading_rad, np.float64)[trace.robot]
     before[1:][trace.follows] = trace.heading1_rad[:-1][trace.follows]
@@ -141,9 +145,10 @@ def _angle(one: Floats, other: Floats) -> Floats:
 def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) -> list[Finding]:
     """Check that motions take the time that the robot or elevator needs.
 
-    A run shorter than the fastest speed profile must have exceeded a speed or an acceleration,
-    whatever its shape; a longer one is not the motion that was recorded. How long guided motion
-    takes is up to robots outside the simulation.
+    A straight run must follow the fastest speed profile. If it takes less time, it must have
+    exceeded a limit of speed or acceleration; if it takes more time, it followed another profile.
+    The duration of guided motion is not checked, because robots outside the simulation determine
+    it.
     """
     needed = np.full(len(trace), np.nan)
     is_run, is_turn = trace.kind == Motion.RUN, trace.kind == Motion.TURN
@@ -163,7 +168,7 @@ def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) 
 
 
 def speeds(trace: Trace, limits: Kinematics) -> list[Finding]:
-    """Check that top speeds that the trace states for straight runs, if any, equal the limits."""
+    """Check that the top speeds of straight runs equal the limits, if the trace states them."""
     if trace.top_speed_m_s is None:
         return []
     off = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s - limits.top_speed_m_s, 0.0)
@@ -184,7 +189,7 @@ def _rides(layout: Layout, trace: Trace) -> list[Finding]:
 
 
 def _edges(layout: Layout, trace: Trace) -> list[Finding]:
-    """Check that every run follows edges of the layout straight and in their direction."""
+    """Check that every drive follows a straight chain of edges, in the direction of the edges."""
     is_run = (trace.kind == Motion.RUN) | (trace.is_guided & (trace.from_wp != trace.to_wp))
     ways, way_of = np.unique(
         np.stack([trace.from_wp[is_run], trace.to_wp[is_run]]), axis=1, return_inverse=True

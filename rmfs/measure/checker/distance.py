@@ -6,10 +6,10 @@ Each point moves with constant acceleration, so the squared distance over a comm
 a polynomial of degree four. In Bernstein form on that interval, the polynomial is never below its
 smallest coefficient: if no coefficient is below the squared limit, the points never come closer
 than the limit. The first and last coefficients are the values of the polynomial at the two ends of
-the interval, so a violation is proven if one of them is below the squared limit. If nothing is
-proven either way, the interval is halved (de Casteljau's algorithm), and so on. As intervals get
-shorter, the smallest coefficient converges quadratically to the minimum of the polynomial, so a few
-rounds suffice.
+the interval, so a violation is proven if one of them is below the squared limit. If neither is
+proven, the interval is halved (de Casteljau's algorithm), and each half is examined in the same
+way. As intervals get shorter, the smallest coefficient converges quadratically to the minimum of
+the polynomial, so a few rounds suffice.
 """
 
 from __future__ import annotations
@@ -49,13 +49,14 @@ b_k = sum over j <= k of C(k, j) / C(4, j) a_j, with binomial coefficients C."""
 
 
 def squared_distance(one: Pieces, other: Pieces) -> tuple[Floats, Floats, Floats]:
-    """Return the squared distance of pairs of pieces over their common time.
+    """Return the squared distance between the two pieces of each of K pairs, as a polynomial.
 
     Returns
     -------
     tuple
-        Begin and end of the common time in s, each of shape (K,), and the coefficients a_j of
-        D²(u) = sum a_j u^j for u from 0 (begin) to 1 (end), shape (K, 5).
+        Begin and end in s of the time that the two pieces have in common, each of shape (K,), and
+        the coefficients a_j, shape (K, 5). The squared distance in m² is the sum of a_j u^j, where
+        u grows from 0 at the begin to 1 at the end.
     """
     begin = np.maximum(one.t0_s, other.t0_s)
     end = np.minimum(one.t1_s, other.t1_s)
@@ -81,12 +82,12 @@ def squared_distance(one: Pieces, other: Pieces) -> tuple[Floats, Floats, Floats
 
 
 def below(power: Floats, limit: Floats) -> NDArray[np.bool_]:
-    """Whether each polynomial goes below its limit anywhere on [0, 1].
+    """Return whether each of K polynomials is below its limit anywhere on [0, 1], shape (K,).
 
     Parameters
     ----------
     power
-        Coefficients a_j, shape (K, 5).
+        Coefficients of each polynomial, as returned by `squared_distance`, shape (K, 5).
     limit
         Limit of each polynomial, in the unit of its values (m² for squared distances), shape (K,).
     """
@@ -117,10 +118,10 @@ def _halved(b: Floats) -> tuple[Floats, Floats]:
 
 
 def minimum(power: Floats) -> tuple[Floats, Floats]:
-    """Return where on [0, 1] each polynomial is smallest, and its value there.
+    """Return where on [0, 1] each of K polynomials is smallest, and its value there.
 
-    The interval is halved as in `below`; parts that cannot contain a smaller value than the
-    smallest known one are dropped.
+    The interval is halved as in `below`; parts that cannot contain a value below the smallest one
+    found so far are dropped.
 
     Returns
     -------
@@ -152,8 +153,8 @@ def minimum(power: Floats) -> tuple[Floats, Floats]:
 def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floats]:
     """Find pairs of pieces that come closer than a limit or, for guided robots, may do so.
 
-    For a guided robot (see `Pieces`), only the straight line that it follows is known, not where on
-    this line it is at which time.
+    For a guided robot (see `Pieces`), the straight line that it follows is known, but its position
+    on this line is not.
 
     Parameters
     ----------
@@ -165,9 +166,11 @@ def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floa
     Returns
     -------
     tuple
-        Whether each pair comes, or may come, closer than its limit; time (s) of the closest
-        approach; squared distance (m²) then. All have shape (K,); time and distance are meaningful
-        only for pairs that come, or may come, closer than their limit.
+        Whether each pair comes, or may come, closer than its limit; the time (s) of the closest
+        approach; and the squared distance (m²) at this time. For pairs with a guided robot, the
+        time assumes that this robot drives at constant speed, and the distance is the least one
+        between the lines that the two pieces cover. All arrays have shape (K,); time and distance
+        are meaningful only for pairs that come, or may come, closer than their limit.
     """
     begin, end, power = squared_distance(one, other)
     hit = below(power, limit)
@@ -181,10 +184,11 @@ def meets(one: Pieces, other: Pieces, limit: Floats) -> tuple[Mask, Floats, Floa
 
 
 def squared_between_ways(one: Pieces, other: Pieces) -> Floats:
-    """Return the squared distance between the lines that paired pieces cover, in m², shape (K,).
+    """Return the squared distance (m²) between the lines covered by the pieces of each pair.
 
-    A piece covers the straight line that its robot drives along during the common time of the pair
-    or, if the robot is guided, the line of the whole piece.
+    A piece covers the straight line along which its robot drives during the time that the two
+    pieces have in common or, if the robot is guided, the line of the whole piece. The result has
+    shape (K,).
     """
     begin = np.maximum(one.t0_s, other.t0_s)
     end = np.minimum(one.t1_s, other.t1_s)
@@ -203,14 +207,14 @@ def squared_between_ways(one: Pieces, other: Pieces) -> Floats:
 
 
 def _side(ax: Floats, ay: Floats, bx: Floats, by: Floats, px: Floats, py: Floats) -> Floats:
-    """On which side of the line from a to b a point is: the sign."""
+    """Return a number whose sign states on which side of the line from a to b a point p is."""
     return (bx - ax) * (py - ay) - (by - ay) * (px - ax)
 
 
 def _squared_to_line(
     px: Floats, py: Floats, ax: Floats, ay: Floats, bx: Floats, by: Floats
 ) -> Floats:
-    """Return the squared distance of points from the lines between two ends."""
+    """Return the squared distance of each point p from the line segment from a to b."""
     ux, uy = bx - ax, by - ay
     squared = ux**2 + uy**2
     along = np.divide(

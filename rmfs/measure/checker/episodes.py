@@ -1,6 +1,6 @@
-"""Combines successive overlaps of two bodies into events, each reported once, at its worst moment.
+"""Combines successive overlaps of the same two bodies into one event, reported at its worst moment.
 
-A body is a robot, or a stored pod.
+A body is a robot or a stored pod.
 """
 
 from __future__ import annotations
@@ -16,16 +16,19 @@ if TYPE_CHECKING:
     Index = NDArray[np.int64]
 
 TOGETHER_S = 1e-5
-"""Maximum gap in s between violations of the same bodies that count as one event."""
+"""Maximum gap in s between two violations of the same bodies that count as one event."""
 
 
 def worst(who: tuple[Index, Index], begin_s: Floats, end_s: Floats, amount: Floats) -> list[int]:
-    """Return, for each event, the index of the worst of the violations (overlaps) that form it.
+    """Return the index of the worst violation of each event; a violation is an overlap.
+
+    Successive violations of the same two bodies form an event.
 
     Parameters
     ----------
     who
-        Numbers of the two bodies in each violation: two robots, or a robot and a stored pod.
+        Numbers of the first and of the second body in each of K violations: two robots, or a robot
+        and a stored pod. Two arrays of shape (K,).
     begin_s, end_s
         Time interval of each violation, shape (K,).
     amount

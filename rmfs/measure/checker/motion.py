@@ -31,14 +31,14 @@ no piece."""
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """Speed over time of straight runs from rest to rest, each array of shape (K,).
+    """Speed over time of K straight runs from rest to rest; all arrays have shape (K,).
 
     Attributes
     ----------
     speed_m_s
-        Highest speed reached.
+        Highest speed reached in each straight run.
     speeding_s, cruising_s, braking_s
-        Durations of the three phases.
+        Durations of the three phases: acceleration, constant speed and braking.
     """
 
     speed_m_s: Floats
@@ -48,12 +48,12 @@ class Profile:
 
     @property
     def duration_s(self) -> Floats:
-        """Duration of the whole run."""
+        """Duration of each straight run, in s."""
         return self.speeding_s + self.cruising_s + self.braking_s
 
 
 def profile(length_m: Floats, limits: Kinematics) -> Profile:
-    """Return the fastest run from rest to rest over each length."""
+    """Return the fastest straight run from rest to rest over each distance."""
     a, d = limits.acceleration_m_s2, limits.deceleration_m_s2
     speed = np.minimum(limits.top_speed_m_s, np.sqrt(2 * length_m * a * d / (a + d)))
     cruise_m = np.maximum(length_m - speed**2 / (2 * a) - speed**2 / (2 * d), 0.0)
@@ -73,8 +73,8 @@ def lengths(layout: Layout, trace: Trace) -> Floats:
 class Pieces:
     """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
 
-    For a row of kind guided (a robot in a demonstration was held up), the trace states only the
-    straight line that the robot follows (its way), not where on this line it is at which time. The
+    A row of kind guided is recorded if a robot in a demonstration was held up. It states the
+    straight line that the robot follows (its way), but not the robot's position on this line. The
     piece of such a row covers the whole line at constant speed.
 
     Attributes
@@ -82,11 +82,12 @@ class Pieces:
     row
         Row of the trace to which the piece belongs, shape (K,).
     t0_s, t1_s
-        Start and end of the piece.
+        Start and end of the piece, in s.
     x_m, y_m, vx, vy, hx, hy
-        Position and velocity at `t0_s`, and half the acceleration.
+        Position (m) and velocity (m/s) at `t0_s`, and half the acceleration (m/s²).
     guided
-        Whether the robot may be anywhere on the way at any time between `t0_s` and `t1_s`.
+        Whether the row is guided. The robot may then be anywhere on its way at any time between
+        `t0_s` and `t1_s`.
     """
 
     row: NDArray[np.int64]
@@ -109,7 +110,7 @@ class Pieces:
         return Pieces(**{f.name: getattr(self, f.name)[index] for f in fields(self)})
 
     def at(self, time_s: Floats) -> tuple[Floats, Floats]:
-        """Return the position of each piece, in m, at the time given for it."""
+        """Return the x and y coordinates (m) of each piece at its time in `time_s`."""
         tau = time_s - self.t0_s
         return (
             self.x_m + tau * (self.vx + tau * self.hx),
@@ -117,7 +118,10 @@ class Pieces:
         )
 
     def way(self, begin_s: Floats, end_s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return the line that each robot may cover between two times, as x0, y0, x1, y1 in m."""
+        """Return the line that each robot may cover between two times: its ends x0, y0, x1, y1 (m).
+
+        For a guided robot, it is the whole line of the piece.
+        """
         return (
             *self.at(np.where(self.guided, self.t0_s, begin_s)),
             *self.at(np.where(self.guided, self.t1_s, end_s)),
@@ -172,7 +176,10 @@ def _guided(layout: Layout, trace: Trace, rows: NDArray[np.int64]) -> Pieces:
 def _running(
     layout: Layout, trace: Trace, limits: Kinematics, rows: NDArray[np.int64]
 ) -> list[Pieces]:
-    """Speeding, cruising, braking and, where a run ends early, standing at its end."""
+    """Return pieces of straight runs: acceleration, constant speed and braking.
+
+    If a row lasts longer than its straight run, a fourth piece is the standstill at the end.
+    """
     own = Kinematics(*(getattr(limits, name)[rows] for name in Kinematics.__slots__))
     origin, target = trace.from_wp[rows], trace.to_wp[rows]
     x, y = layout.x_m[origin].astype(np.float64), layout.y_m[origin].astype(np.float64)

@@ -43,13 +43,13 @@ def check(layout: Layout, trace: Trace) -> list[Finding]:
 def _shared(trace: Trace, resource: Index, kind: FindingKind) -> list[Finding]:
     """Find rows of different robots that hold the same resource at the same time.
 
-    Sorted by start time, some neighbours overlap whenever any two rows do. Every shared use is
-    therefore found, though not every pair of robots involved.
+    Only neighbours in the order of start times are compared: if any two rows overlap, so do two
+    neighbours. Every shared use is therefore found, but not every pair of robots involved.
 
     Parameters
     ----------
     resource
-        Resource that each row holds, -1 for none, shape (K,).
+        Number of the resource that each row holds, or -1 for none; shape (K,).
     """
     rows = np.flatnonzero(resource >= 0)
     rows = rows[np.lexsort((trace.t0_us[rows], resource[rows]))]

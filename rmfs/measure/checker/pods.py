@@ -28,7 +28,7 @@ WAYS_AT_ONCE = 256
 
 @dataclass(frozen=True, slots=True)
 class Stays:
-    """Stays of pods at places, sorted by place; arrays of shape (S,)."""
+    """Stays of pods at places (waypoints), sorted by place; all arrays have shape (S,)."""
 
     pod: Index
     place: Index
@@ -37,7 +37,7 @@ class Stays:
 
 
 def check(layout: Layout, trace: Trace, pieces: Pieces) -> list[Finding]:
-    """Find every faulty handling of a pod and every collision of a carried with a stored pod."""
+    """Find every faulty handling of a pod, and every collision of a carried and a stored pod."""
     stays, found = ledger(layout, trace)
     return [*_carrying(trace), *found, *_crossings(layout, trace, pieces, stays)]
 
@@ -63,9 +63,9 @@ def _carrying(trace: Trace) -> list[Finding]:
 
 
 def ledger(layout: Layout, trace: Trace) -> tuple[Stays, list[Finding]]:
-    """Track every pod from place to robot to place.
+    """Track where every pod is: at a place, or on a robot.
 
-    A pod is stored until its lifting starts, and again from the end of its setting down.
+    A pod counts as stored until a robot starts to lift it, and again as soon as it is set down.
 
     Returns
     -------
@@ -104,7 +104,7 @@ def ledger(layout: Layout, trace: Trace) -> tuple[Stays, list[Finding]]:
 
 
 def _handlings(trace: Trace) -> list[tuple[int, int, int, int, int]]:
-    """(time, kind, robot, pod, waypoint) of every lifting and setting down, by time."""
+    """Return every lifting and setting down, by time: (time, kind, robot, pod, waypoint)."""
     lifts = np.flatnonzero((trace.kind == Motion.LIFT) & (trace.pod >= 0))
     downs = np.flatnonzero((trace.kind == Motion.SET_DOWN) & (trace.pod >= 0))
     rows = np.concatenate([lifts, downs])
@@ -152,7 +152,7 @@ def _crossings(layout: Layout, trace: Trace, pieces: Pieces, stays: Stays) -> li
 
 
 def _meetings(layout: Layout, trace: Trace, stays: Stays) -> tuple[Index, Index]:
-    """Pairs of loaded row and stay that are near in space and share time."""
+    """Return pairs of a row with a carried pod and a stay of another pod nearby at that time."""
     rows = np.flatnonzero((trace.pod >= 0) & (trace.kind != Motion.LIFT_RIDE))
     ways, way_of = np.unique(
         np.stack([trace.from_wp[rows], trace.to_wp[rows]]), axis=1, return_inverse=True
@@ -181,7 +181,10 @@ def _within(count: Index) -> Index:
 
 
 def _touched(layout: Layout, origin: Index, target: Index, places: Index) -> tuple[Index, Index]:
-    """Return pairs (way, place) where a pod on the straight way would touch one at the place."""
+    """Return pairs (way, place) for which a pod carried along the straight way would touch a pod.
+
+    The other pod is stored at the place.
+    """
     px, py = layout.x_m[places], layout.y_m[places]
     tier = np.asarray(layout.tier)
     found: list[tuple[Index, Index]] = []

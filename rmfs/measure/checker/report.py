@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class FindingKind(StrEnum):
-    """The rules a trace can break."""
+    """The kinds of violations that a trace can contain."""
 
     GAP = "gap"
     JUMP = "jump"
@@ -44,18 +44,20 @@ MEANING = {
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One violation of a rule by a trace.
+    """One violation found in a trace.
 
     Attributes
     ----------
     time_s
-        Time of the violation; for overlaps the time of closest approach.
+        Time of the violation; for overlaps, the time of the closest approach.
     robots
-        The robots concerned, ascending.
+        Numbers of the robots concerned, in ascending order.
     place
-        Waypoint at or near which the violation occurs; -1 if the trace lacks the robot altogether.
+        Waypoint at or near which the violation occurs; -1 if the trace contains no row of the
+        robot.
     amount
-        Size of the violation, or number of the pod or waypoint concerned, as stated in `MEANING`.
+        Size of the violation, or the number of the pod or waypoint concerned; see `MEANING` for
+        each kind.
     """
 
     kind: FindingKind
@@ -81,10 +83,10 @@ class CheckReport:
     findings
         Every violation, in order of time.
     pieces
-        Number of motions, that is, of rows of the trace.
+        Number of motions; each is a row of the trace.
     pairs
-        Number of pairs that were examined for overlaps of two robots, because they are close in
-        time and space. A pair consists of two parts of motions, each with constant acceleration.
+        Number of pairs of pieces that were examined for an overlap of two robots, because they are
+        close in time and space. A piece is a part of a motion with constant acceleration.
     """
 
     findings: list[Finding] = field(default_factory=list)
@@ -107,7 +109,7 @@ class CheckReport:
         return [finding for finding in self.findings if finding.kind == kind]
 
     def summary(self, limit: int = 10) -> str:
-        """Return the result in a few lines: counts per kind and the first findings."""
+        """Return the result in a few lines: findings per kind, and the first `limit` findings."""
         if self.ok:
             return f"trace is safe: {self.pieces} motions, {self.pairs} close pairs proven apart"
         counts = {kind: len(self.of(kind)) for kind in FindingKind}

@@ -82,7 +82,7 @@ def _collisions(
 
 
 def _nearest(layout: Layout, trace: Trace, piece: Pieces, time_s: float) -> int:
-    """Return the waypoint nearest to where a single piece is at a time."""
+    """Return the waypoint nearest to the position of a single piece at a given time."""
     x, y = piece.at(np.array([time_s]))
     tier = layout.tier[trace.from_wp[piece.row[0]]]
     away = np.hypot(layout.x_m - x[0], layout.y_m - y[0])

@@ -3,10 +3,10 @@
 This is the first phase of the search for collisions of robots; the second (`distance`) examines
 the pairs.
 
-Time is divided into slabs. For each slab that a piece extends over, there is a box around the part
-of the way that is driven in the slab. The boxes of one slab and tier form a lane. The lanes are
-placed side by side along one axis and swept together, so that the work grows with the number of
-close boxes and not with the square of the number of robots.
+Time is divided into slabs of equal length. A piece has a box for each slab in which it takes place;
+the box encloses the part of the line that the robot covers in this slab. The boxes of one slab and
+tier form a lane. The lanes are placed side by side along one axis and swept together, so that the
+work grows with the number of close boxes and not with the square of the number of robots.
 """
 
 from __future__ import annotations
@@ -42,7 +42,11 @@ class Boxes:
     piece
         Index of the piece.
     lane
-        Slab and tier as one number; only boxes in the same lane can overlap.
+        Number that identifies slab and tier; only boxes in the same lane can overlap.
+    t0_s, t1_s
+        Start and end of the part of the piece that lies in the slab.
+    x0_m, x1_m, y0_m, y1_m
+        Borders of the box.
     """
 
     piece: Index
@@ -71,14 +75,14 @@ def close_pairs(
     Parameters
     ----------
     radius_m, tier, robot
-        For each piece: radius of the robot or, if larger, of the pod that it carries; tier; number
-        of the robot. Shape (K,).
+        Three arrays of shape (K,) with a value for each piece: the radius in m of the robot or, if
+        larger, of the pod that it carries; the tier; and the number of the robot.
 
     Yields
     ------
     tuple
-        A batch of pairs without duplicates: an array with the index of the first piece of each
-        pair, and an array with that of the second.
+        A batch of pairs without duplicates, as two arrays: the indices of the first pieces of the
+        pairs, and those of the second pieces.
     """
     for begin, end in _windows(pieces, int(robot.max(initial=0)) + 1):
         within = (pieces.t0_s < end * SLAB_S) & (pieces.t1_s > begin * SLAB_S)
@@ -102,10 +106,9 @@ def _windows(pieces: Pieces, robots: int) -> Iterator[tuple[int, int]]:
 
 
 def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -> Boxes:
-    """Divide pieces at the borders of slabs; return a box per part, enlarged by `radius_m`.
+    """Divide pieces at the borders of slabs; return a box for each part, enlarged by `radius_m`.
 
-    A piece follows a straight line in one direction, so the box of a part is spanned by the two end
-    points of the part.
+    A piece follows a straight line in one direction, so the two ends of a part span its box.
 
     Parameters
     ----------

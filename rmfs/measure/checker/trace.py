@@ -22,7 +22,7 @@ MICROSECONDS = 1e6
 
 
 class Motion(IntEnum):
-    """The kind of motion in a row of a trace."""
+    """The kinds of motion; each row of a trace has one of them."""
 
     HOLD = 0
     TURN = 1
@@ -79,20 +79,21 @@ class Trace:
 
     @property
     def follows(self) -> NDArray[np.bool_]:
-        """Whether row k + 1 belongs to the robot of row k, shape (K - 1,)."""
+        """Whether row k + 1 belongs to the same robot as row k, shape (K - 1,)."""
         same: NDArray[np.bool_] = self.robot[1:] == self.robot[:-1]
         return same
 
     @property
     def is_last(self) -> NDArray[np.bool_]:
-        """Whether the row is the last of its robot, shape (K,)."""
+        """Whether each row is the last row of its robot, shape (K,)."""
         return np.append(~self.follows, True)[: len(self)]
 
     @property
     def end_us(self) -> int:
-        """The start of the last motion: by default, the trace must cover every robot up to then.
+        """Time at which the last motion of the trace starts, in microseconds.
 
-        A turn and the straight run after it count as one motion.
+        By default, the trace must cover every robot up to this time. A turn and the straight run
+        after it count as one motion.
         """
         begins = self.t0_us.copy()
         follows = self.follows & (self.kind[:-1] == Motion.TURN)
@@ -101,29 +102,31 @@ class Trace:
 
     @property
     def is_guided(self) -> NDArray[np.bool_]:
-        """Whether only the way is known, and not where on it the robot is, shape (K,)."""
+        """Whether each row is guided, shape (K,).
+
+        For a guided row, the robot's way is known, but not its position on the way.
+        """
         guided: NDArray[np.bool_] = self.kind == Motion.GUIDED
         return guided
 
     def is_kind(self, *kinds: Motion) -> NDArray[np.bool_]:
-        """Return which rows are of one of these kinds, shape (K,)."""
+        """Return whether each row is of one of the given kinds, shape (K,)."""
         return np.isin(self.kind, kinds)
 
 
 def read(layout: Layout, columns: Mapping[str, Any]) -> Trace:
-    """Validate the columns of a trace.
+    """Validate the columns of a trace, and sort its rows by robot and time.
 
     Parameters
     ----------
     columns
-        Arrays by name, or a pandas frame; extra columns are ignored. Rows are sorted here if
-        necessary.
+        Arrays by name, or a pandas frame; extra columns are ignored.
 
     Raises
     ------
     InputError
-        If a column is missing, lengths differ, or a row refers to a robot, waypoint, pod or kind
-        that does not exist.
+        If a column is missing, lengths differ, a row refers to a robot, waypoint, pod or kind that
+        does not exist, or a heading or top speed is invalid.
     """
     missing = [name for name in COLUMNS if name not in columns]
     if missing:
@@ -171,7 +174,10 @@ class Slow(NamedTuple):
     Attributes
     ----------
     from_us, to_us
-        Motions that start in [from_us, to_us) are slow.
+        Start and end of the period in microseconds. Motions that start in [from_us, to_us) are
+        slow.
+    share
+        Share of the top speed to which the robot is limited.
     """
 
     robot: int
@@ -182,7 +188,7 @@ class Slow(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Kinematics:
-    """The limits of the robot of each row, arrays of shape (K,).
+    """Kinematic limits of the robots in K rows of a trace; all arrays have shape (K,).
 
     Attributes
     ----------
@@ -199,7 +205,7 @@ class Kinematics:
 
     @classmethod
     def of(cls, layout: Layout, robots: NDArray[np.int64]) -> Kinematics:
-        """Return the limits of the robot of each row."""
+        """Return the limits for rows that belong to the given robots."""
         kind = np.asarray(layout.robot_kind)[robots]
         return cls(
             **{
@@ -209,14 +215,14 @@ class Kinematics:
         )
 
     def told(self, trace: Trace) -> Kinematics:
-        """Return the limits, with the top speeds stated in the trace if these are lower."""
+        """Return the limits, but with the top speeds that the trace states, if these are lower."""
         if trace.top_speed_m_s is None:
             return self
         top = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s, self.top_speed_m_s)
         return replace(self, top_speed_m_s=np.minimum(top, self.top_speed_m_s))
 
     def slowed(self, trace: Trace, slow: Sequence[Slow]) -> Kinematics:
-        """Return the limits, with reduced top speeds in the given periods."""
+        """Return the limits, but with the top speeds reduced in the given periods."""
         top = self.top_speed_m_s.copy()
         for one in slow:
             meant = (trace.robot == one.robot) & (trace.t0_us >= one.from_us)

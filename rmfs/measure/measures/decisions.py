@@ -21,7 +21,10 @@ SOURCES = {
 
 
 class Decisions(Measure):
-    """Decisions of all controllers: number, wall time, and share of each source in `SOURCES`."""
+    """Number of decisions, wall time of controllers, and shares of decisions by their source.
+
+    A source is, for example, the solution of an optimiser, or a controller's own rule.
+    """
 
     columns = (
         Column("decisions", INTEGER, "decisions", "Decisions made by all controllers"),
@@ -47,7 +50,7 @@ class Decisions(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the number of decisions, the total wall time, and the share of each source."""
+        """Return number of decisions, wall time of controllers, and share of each source."""
         controllers = run.tables["controllers"]
         counts = {source: int(controllers[f"{source}_decisions"].sum()) for source in SOURCES}
         total = sum(counts.values())
@@ -111,7 +114,10 @@ class Optimisers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the numbers of questions and failures, mean gaps, and simulated and wall times."""
+        """Return numbers of questions and failures, mean optimality gaps, and times until answers.
+
+        These times are given both as simulated time and as wall time.
+        """
         decisions = run.tables["decisions"]
         asked = decisions[decisions["source"] == "optimiser"]
         return {

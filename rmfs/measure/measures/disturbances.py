@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Disturbances(Measure):
-    """Disturbances, and motions that started late."""
+    """Number and duration of disturbances, and motions that started late."""
 
     columns = (
         Column(
@@ -44,7 +44,10 @@ class Disturbances(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return figures on disturbances, late motions, and plans repaired after late motions."""
+        """Return numbers and total times of disturbances and of late motions.
+
+        Also return how many plans were repaired after late motions.
+        """
         counters = run.recorder.counters
         return {
             "disturbances": int(counters["disturbances"]),

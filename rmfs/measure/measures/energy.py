@@ -44,7 +44,10 @@ class Energy(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the energy in total, per picked unit and by use; nan if energy is not modelled."""
+        """Return the energy in total, per picked unit and for each use, such as driving.
+
+        All values are nan if energy is not modelled.
+        """
         counted = run.recorder.energy.final
         if not counted:
             return dict.fromkeys((column.name for column in self.columns), nan)
@@ -106,7 +109,7 @@ class Batteries(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return figures on charging and on the batteries; empty without batteries."""
+        """Return measures of charging and of battery levels; None or nan without batteries."""
         energy = run.recorder.energy
         batteries, counted, samples = energy.batteries, energy.final, energy.samples
         if batteries is None:

@@ -18,7 +18,7 @@ BUSY = ("pick", "replenish", "park", "reposition")
 
 
 class Motion(Measure):
-    """Distances and trips."""
+    """Distances, trips and lifts of the robots."""
 
     columns = (
         Column("distance_m", REAL, "m", "Distance driven by all robots", better=LESS),
@@ -51,7 +51,7 @@ class Motion(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return distances, number of trips, their mean time and delay, and number of lifts."""
+        """Return distances driven, numbers of trips and lifts, and mean time and delay of trips."""
         motion, trips = run.recorder.motion, run.tables["trips"]
         lasted = trips["end_s"] - trips["start_s"]
         delay = (lasted - trips["unhindered_s"])[trips["kind"] != "to_station"]
@@ -115,9 +115,10 @@ class RobotTime(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the busy share, the share of time in each state, and the tasks started, by kind.
+        """Return the busy share, the share of time in each state, and the numbers of tasks started.
 
-        A robot is busy while it has one of the tasks in `BUSY`.
+        A robot is busy while it has a task of one of the kinds in `BUSY`. The tasks are counted by
+        kind.
         """
         robots = run.tables["robots"]
         robot_time = run.layout.robots * run.logs.duration_s

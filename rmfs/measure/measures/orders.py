@@ -64,7 +64,7 @@ class OrderTimes(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return statistics of the times of completed orders, and how many were late."""
+        """Return statistics of the times of completed orders, and how many of them were late."""
         done = completed(run.tables["orders"])
         lateness = done["lateness_s"]
         late = lateness[lateness > 0]
@@ -79,7 +79,7 @@ class OrderTimes(Measure):
 
 
 class Backlog(Measure):
-    """Numbers of orders that arrived, that wait for a station, and that are open."""
+    """Numbers of orders that arrive, wait for a station, or are open."""
 
     columns = (
         Column(
@@ -115,7 +115,11 @@ class Backlog(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return mean and final backlog, mean number of open orders, and number of arrivals."""
+        """Return mean and final backlog, mean number of open orders, and number of arrivals.
+
+        Also return how many order lines were drawn again for lack of stock, and how many orders
+        exceeded the available stock when they arrived.
+        """
         orders, counters = run.logs.orders, run.recorder.counters
         measured = (run.start_s, run.end_s)
         waiting = Steps.between(

@@ -1,4 +1,4 @@
-"""Orders on their way from pick stations to packing; columns are empty without packing."""
+"""Measures of orders between pick stations and packing; empty without packing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Packing(Measure):
-    """Put wall, blocked slots of stations, packers, and times until orders are packed."""
+    """Times until orders are packed, use of put wall and packers, and blocked order slots."""
 
     columns = (
         Column(
@@ -152,7 +152,7 @@ class Packing(Measure):
 
 
 def slots_in_use(totes: pd.DataFrame, *, per_part: bool) -> Steps:
-    """Return the number of slots of the put wall in use, over time.
+    """Return the number of slots in use in the put wall as a function of time.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Pickers at the pick stations; columns are empty if the scenario has no pickers."""
+"""Measures of pickers at the pick stations; empty if the scenario has no pickers."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Pickers(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return presence, times, fatigue and errors of pickers; None or nan if there are none."""
+        """Return presence, times, fatigue and errors of pickers; None or nan without pickers."""
         if run.recorder.pickers.staff is None:
             return {
                 column.name: None if column.dtype == COUNT_OR_EMPTY else nan

@@ -1,4 +1,4 @@
-"""Path planning, and safety of the paths."""
+"""Measures of path planning, and of the safety of the paths."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Planning(Measure):
-    """Counts and times of path planning."""
+    """Plans, failed searches, search effort and times of path planning."""
 
     columns = (
         Column("plans", INTEGER, "plans", "Paths planned and accepted"),
@@ -55,7 +55,7 @@ class Planning(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return counts and times of path planning."""
+        """Return counts of plans, failures, replans and expanded labels, and times of planning."""
         counters = run.recorder.counters
         names = ("plans", "plan_failures", "replans", "expansions")
         return {

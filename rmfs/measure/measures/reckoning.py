@@ -18,7 +18,17 @@ def ratio(amount: float, by: float) -> float:
 
 
 def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
-    """Return columns for mean, median and quartiles of times in s; lower values are better."""
+    """Declare columns for the mean, median and quartiles of a time in s.
+
+    Lower values are declared as better.
+
+    Parameters
+    ----------
+    name
+        Beginning of the columns' names.
+    meaning
+        What the time is, for the descriptions of the columns.
+    """
     told = {
         "mean": "Mean of",
         "median": "Median of",
@@ -32,7 +42,7 @@ def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
 
 
 def spread(name: str, values: pd.Series[float]) -> dict[str, Any]:
-    """Return mean, median and quartiles of times, by column name; nan if there are no times."""
+    """Return mean, median and quartiles of times by column name; nan if `values` is empty."""
     return {
         f"{name}_mean_s": values.mean(),
         f"{name}_median_s": values.median(),

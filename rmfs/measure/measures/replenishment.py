@@ -63,5 +63,5 @@ class Inventory(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the time average of the fill level."""
+        """Return the time average of the fill level, as a share of the capacity of all pods."""
         return {"inventory_share_mean": inventory_share(run.logs).mean(run.start_s, run.end_s)}

@@ -83,8 +83,8 @@ class Service(Measure):
     def footprint(self, run: EndedRun) -> dict[str, Any]:
         """Return on-time shares, and the lateness of the orders done.
 
-        For the end of the run, also return the number of overdue orders and the age of the oldest
-        order that is not done.
+        Also return how many orders are overdue at the end of the run, and the age of the oldest
+        order that is not done then.
         """
         orders, names = served(run.logs), class_names(run.logs)
         done, cancelled, overdue = orders["done"], orders["cancelled"], orders["overdue"]

@@ -1,4 +1,4 @@
-"""Orders that stock could not serve."""
+"""Orders that could not be served from stock."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 class ShortOrders(Measure):
     """Orders that were cancelled, delivered in part, or stuck at the end.
 
-    An order is stuck if it waits for a station and stock cannot serve it.
+    An order is stuck if it waits for a station and cannot be served from stock.
     """
 
     columns = (

@@ -44,7 +44,7 @@ class Speed(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return wall time, simulated time per wall time, and the peak memory of this process."""
+        """Return wall time, simulated seconds per wall second, and this process's peak memory."""
         return {
             "wall_s": run.wall_s,
             "sim_per_wall": ratio(run.end_s, run.wall_s),

@@ -83,7 +83,7 @@ class Potential(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the upper bound, the units score, and `units_per_h_at_pile_on`.
+        """Return the bound on units per hour, the units score, and `units_per_h_at_pile_on`.
 
         All three are nan if pickers may handle units in arbitrarily short times;
         `units_per_h_at_pile_on` is nan in every scenario with pickers. A warning is issued if the

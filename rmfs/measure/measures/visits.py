@@ -51,7 +51,7 @@ class Visits(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the number of visits in which something was handled.
+        """Return the number of visits in which at least one unit or bundle was handled.
 
         Units, lines, orders and bundles are returned as means per such visit.
         """

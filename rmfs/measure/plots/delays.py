@@ -31,7 +31,7 @@ BINS = 24
 
 
 def delays(orders: pd.DataFrame, ax: Axes) -> None:
-    """Plot the mean of each part of turnover time, stacked, over the time of completion.
+    """Plot the mean of each part of order turnover, stacked, against the time of completion.
 
     Parameters
     ----------

@@ -21,13 +21,13 @@ def hours(ax: Axes) -> None:
 
 
 def per_hour(series: pd.DataFrame, column: str, bin_s: float) -> tuple[Floats, Floats]:
-    """Return the hourly rates of a column of a table `series`, averaged over time bins.
+    """Return the hourly rates of the counts in a column of `series`, averaged over time bins.
 
     Parameters
     ----------
     bin_s
-        Minimum length of a bin in s. If the series is shorter than three such bins, bins are
-        shorter.
+        Minimum length of a bin in s. A series shorter than three such bins is divided into at most
+        three shorter bins.
 
     Returns
     -------

@@ -26,8 +26,8 @@ def progression(
     series
         The table `series` of a run.
     bin_s
-        Minimum length of the time bins in s. If the series is shorter than three such bins, bins
-        are shorter.
+        Minimum length of the time bins in s. A series shorter than three such bins is divided into
+        at most three shorter bins.
     bound_per_h
         Upper bound on units picked per hour, drawn as a dotted line. Default: no bound.
     """

@@ -1,4 +1,4 @@
-"""Convergence of the rate of picking, for choosing the length of a warm-up."""
+"""Convergence of a rate, such as units picked per hour, for choosing the length of a warm-up."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def warmup(series: pd.DataFrame, ax: Axes, *, column: str = "units_picked") -> None:
-    """Plot the rate in each minute, its moving average, and two proposals for the warm-up.
+    """Plot a rate in each minute, its moving average, and two proposals for the warm-up.
 
     One proposal is by MSER-5, the other by Welch's method (`rmfs.measure.warmup`). The series
     starts after the run's own warm-up, so use a run with `warmup_s = 0`.

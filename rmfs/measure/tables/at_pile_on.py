@@ -1,4 +1,4 @@
-"""How fast a pick station would work at a given pile-on if the next pod were always ready."""
+"""Maximum rate of a pick station at a given pile-on, provided that the next pod is always ready."""
 
 from __future__ import annotations
 
@@ -44,11 +44,11 @@ def units_per_h(layout: Layout, station: PickStation, units_per_visit: float) ->
 def change_s(layout: Layout, waypoint: int) -> float:
     """Return the minimum time from one robot's departure to the next one's arrival, in s.
 
-    The departing robot turns from the edge on which it arrived to an edge that leads away from the
-    waypoint, and clears the waypoint when it reaches the end of the latter edge. Only then may the
-    next robot enter the edge on which it arrives. The result is the minimum over all choices of
-    these edges and over the kinds of robots. It is assumed that robots stop at the waypoint only,
-    not at the other ends of these edges.
+    The departing robot turns from the edge on which it arrived to the edge on which it leaves, and
+    clears the waypoint when it reaches the end of that second edge. Only then may the next robot
+    enter the edge on which it arrives. The result is the minimum over all choices of these three
+    edges and over the kinds of robots. Robots are assumed to stop only at the waypoint itself, not
+    at the other ends of these edges.
     """
     inward, outward = list(_edges_in(layout, waypoint)), list(_edges_out(layout, waypoint))
     if not inward or not outward:

@@ -35,7 +35,7 @@ KEPT = ("sku", "units", "created_s", "stored_s", "pod", "station")
 
 
 def bundle_lines(logs: Logs) -> pd.DataFrame:
-    """Make a row for every bundle that comes from a file and is in the table `bundles`."""
+    """Return one row per bundle, for all bundles in the table `bundles` that come from a file."""
     stream = logs.recorder.bundle_stream
     bundles = seen_bundles(logs)
     bundles = bundles[bundles["in_file"] >= 0]

@@ -1,4 +1,4 @@
-"""The tables `connections` (trips, by start and end) and `edges` (how often each was used)."""
+"""The tables `connections` (trips by start and end) and `edges` (how often each edge was used)."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ EDGES = (
 
 
 def connections(logs: Logs) -> pd.DataFrame:
-    """Make a row per pair of start and end waypoint of trips that ended in the measured time."""
+    """Return one row per origin-destination pair of the trips that ended in the measured time."""
     told = logs.recorder.trips
     number = logs.layout.waypoints
     pair = told["from_wp"].astype(np.int64) * number + told["to_wp"]
@@ -84,7 +84,7 @@ def connections(logs: Logs) -> pd.DataFrame:
 
 
 def edges(logs: Logs) -> pd.DataFrame:
-    """Make a row per edge used in the measured time; elevator rides count as edges."""
+    """Return one row per edge used in the measured time; elevator rides count as edges."""
     told, tier = logs.recorder.edges, logs.layout.tier
     return tidy(
         "edges",
@@ -100,7 +100,7 @@ def edges(logs: Logs) -> pd.DataFrame:
 
 
 def waypoint_kinds(layout: Layout) -> NDArray[np.str_]:
-    """Return each waypoint's kind, as in the column `from_kind` of `connections`, shape (N,)."""
+    """Return the kind of each waypoint, with the values of `from_kind`; shape (waypoints,)."""
     kinds = np.full(layout.waypoints, "road", dtype="<U13")
     kinds[layout.is_queue] = "queue"
     kinds[layout.is_storage] = "storage"

@@ -159,10 +159,10 @@ CONTROLLERS = (
 
 
 def decisions(logs: Logs) -> pd.DataFrame:
-    """Make a row per call of a controller, and per question to an optimiser, sorted by time.
+    """Return one row per call of a controller or question to an optimiser, sorted by time.
 
-    A call has a row only if the controller made decisions in it without an optimiser. The warm-up
-    is left out.
+    A call has a row only if the controller made decisions in it without an optimiser. Calls and
+    questions of the warm-up are left out.
     """
     import pandas as pd
 
@@ -188,9 +188,9 @@ def decisions(logs: Logs) -> pd.DataFrame:
 
 
 def answers(logs: Logs) -> pd.DataFrame:
-    """Make a row per question to an optimiser, those of the warm-up included.
+    """Return one row per question to an optimiser, including questions asked in the warm-up.
 
-    A later run with the pacing `replay` needs all of them.
+    The rows cover the warm-up because a later run with the pacing `replay` needs all answers.
     """
     asked = logs.recorder.questions
     solutions = logs.recorder.solutions
@@ -212,7 +212,7 @@ def answers(logs: Logs) -> pd.DataFrame:
 
 
 def controllers(logs: Logs) -> pd.DataFrame:
-    """Make a row per decision problem whose controller was called in the measured time."""
+    """Return one row per decision problem whose controller was called in the measured time."""
     asked = dict(sorted(logs.recorder.asked.items()))
     calls = np.array([number for number, _ in asked.values()])
     wall_s = np.array([wall for _, wall in asked.values()])
@@ -286,7 +286,7 @@ def _questions(asked: list[Call]) -> dict[str, Any]:
 
 
 def _told(asked: list[Call]) -> dict[str, list[Any]]:
-    """Return columns that describe answers; empty where there is none."""
+    """Return columns that describe answers; empty for questions without an answer."""
     empty = dict.fromkeys(_OF_ANSWERS, nan) | {"backend": "", "status": ""}
     return {
         name: [empty[name] if call.answer is None else tell(call.answer) for call in asked]

@@ -4,8 +4,8 @@ The parts are the times between the following moments (some of these times are d
 order arrives; the order is assigned to a station; a robot gets the task to bring the pod from which
 the line's last unit is picked; the robot lifts the pod; the robot enters the queue zone; the robot
 reaches the station; the line's last unit has been handled; the order is complete. The parts add up
-to the order's turnover time. If the pod was already under way when the order was assigned, moments
-of the robot before the assignment are replaced by the time of the assignment.
+to the order's turnover time. If the pod was already under way when the order was assigned, those
+moments of the robot that lie before the assignment are replaced by the time of the assignment.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ _PICK, _REST = TASKS.index("pick"), TASKS.index("rest")
 
 
 def delays(logs: Logs) -> pd.DataFrame:
-    """Make a row per line of the orders completed in the measured time."""
+    """Return one row per line of the orders completed in the measured time."""
     lines = _lines(logs)
     created, completed = lines["created_s"].to_numpy(), lines["completed_s"].to_numpy()
     robot, picked = lines["robot"].to_numpy(), lines["time_s"].to_numpy()
@@ -117,7 +117,7 @@ def _lines(logs: Logs) -> pd.DataFrame:
 
 
 def _time_at_rest(logs: Logs, at_s: Floats) -> Floats:
-    """Return, for each time, how long some robot had been idle until then."""
+    """Return, for each time, the total time until then in which at least one robot was at rest."""
     tasks, robots = logs.tasks, logs.layout.robots
     first = np.full(robots, logs.end_s)
     np.minimum.at(first, tasks["robot"].to_numpy(), tasks["begin_s"].to_numpy())
@@ -133,7 +133,7 @@ def _time_at_rest(logs: Logs, at_s: Floats) -> Floats:
 
 
 class _Moments:
-    """Times of the robot of each line before the pick, in s.
+    """For each order line, the times (s) at which its robot reached certain stages before the pick.
 
     Attributes
     ----------
@@ -146,7 +146,7 @@ class _Moments:
     visit
         When it reached the station.
     to_pod, to_station
-        The drives between these.
+        The robot's drives to the pod and to the station.
     """
 
     def __init__(self, logs: Logs, robot: Integers, picked: Floats) -> None:
@@ -170,7 +170,7 @@ class _Drives:
     Attributes
     ----------
     end
-        Its end; the start of the interval if there was none.
+        End of the trip; the start of the interval if there was no such trip.
     """
 
     def __init__(
@@ -204,8 +204,8 @@ class _Drives:
     def hindered(self, from_s: Floats, to_s: Floats) -> Floats:
         """Return the hindered time of the part of each drive that lies in a time interval.
 
-        Hindrance is distributed evenly over a drive. For drives to a pod, the time before the robot
-        starts counts as well, when another robot was standing beneath the pod.
+        Hindrance is distributed evenly over a drive. A drive to a pod counts from the task to the
+        lift, so it includes time for which another robot was standing beneath the pod.
         """
         since = self._from if self._is_to_pod else self._begin
         until = to_s if self._is_to_pod else self.end
@@ -221,7 +221,7 @@ class _Drives:
 def _last(
     robots: pd.Series[int], times: pd.Series[float], robot: Integers, until_s: Floats
 ) -> Floats:
-    """Return the last of the times of each robot up to a moment; minus infinity without one."""
+    """Return, for each entry of `robot`, its last time up to `until_s`; -inf if there is none."""
     found = _last_row(np.asarray(robots), np.asarray(times, np.float64), robot, until_s)
     return np.append(np.asarray(times, np.float64), -np.inf)[found]
 
@@ -229,7 +229,7 @@ def _last(
 def _last_row(
     robots: NDArray[np.int64] | Floats, times: Floats, robot: Integers, until_s: Floats
 ) -> Integers:
-    """Return the row of the last of the times of each robot up to a moment; -1 without one."""
+    """Return, for each entry of `robot`, the row of its last time up to `until_s`, or -1."""
     order = np.lexsort((times, robots))
     found = np.full(len(robot), -1, np.int64)
     for one in np.unique(robot):

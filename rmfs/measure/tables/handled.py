@@ -66,7 +66,7 @@ VISITS = (
 
 
 def picks(logs: Logs) -> pd.DataFrame:
-    """Make a row per unit picked in the measured time."""
+    """Return one row per unit picked in the measured time."""
     frame = logs.units_now.reset_index(drop=True)
     if logs.recorder.pickers.staff is not None:
         frame = frame.join(logs.picks_by_hand)
@@ -77,7 +77,7 @@ def picks(logs: Logs) -> pd.DataFrame:
 
 
 def bundles(logs: Logs) -> pd.DataFrame:
-    """Make a row per bundle, except bundles stored before the measured time.
+    """Return one row per bundle, except bundles stored before the measured time.
 
     The rows are sorted by arrival.
     """
@@ -98,6 +98,6 @@ def seen_bundles(logs: Logs) -> pd.DataFrame:
 
 
 def visits(logs: Logs) -> pd.DataFrame:
-    """Make a row per visit to a station, except visits that ended before the measured time."""
+    """Return one row per visit to a station, except visits that ended before the measured time."""
     frame = logs.visits
     return tidy("visits", VISITS, frame[~(frame["end_s"] < logs.start_s)].reset_index(drop=True))

@@ -47,7 +47,7 @@ class Logs:
 
     @cached_property
     def picks_by_hand(self) -> pd.DataFrame:
-        """How pickers handled each unit in `units_now`; empty if pickers are not modelled."""
+        """Handling of each unit in `units_now` by its picker; empty if pickers are not modelled."""
         told = framed(self.recorder.pickers.units)
         return told.iloc[len(self.units) - len(self.units_now) :].reset_index(drop=True)
 
@@ -85,7 +85,7 @@ class Logs:
 
     @cached_property
     def busy(self) -> pd.DataFrame:
-        """Periods in which stations handled something, sorted by station and time."""
+        """Periods in which stations were busy, sorted by station and start."""
         frame = framed(self.recorder.busy)
         return frame.sort_values(["station", "begin_s"], ignore_index=True)
 
@@ -101,7 +101,7 @@ class Logs:
 
     @cached_property
     def all_trips(self) -> dict[str, NDArray[Any]]:
-        """Trips that ended, those of the warm-up first: columns for robot, kind, and times in s."""
+        """Columns of all trips that ended, in the warm-up or later: robot, kind, and times in s."""
         parts = [one for one in (self.recorder.early_trips, self.recorder.trips) if one]
         whole = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
         return {
@@ -115,7 +115,7 @@ class Logs:
 
     @cached_property
     def switches(self) -> pd.DataFrame:
-        """Stations switched on or off."""
+        """Events of switching a station on or off."""
         return framed(self.recorder.switches)
 
     @cached_property
@@ -131,10 +131,10 @@ class Logs:
 
     @cached_property
     def visits(self) -> pd.DataFrame:
-        """Visits of pods to stations, with the `units` and `bundles` handled in the measured time.
+        """Visits to stations, with the numbers of units and bundles handled in the measured time.
 
-        Each unit or bundle is counted in the last visit to its station that began before it was
-        handled.
+        The columns of these numbers are `units` and `bundles`. Each unit or bundle is attributed to
+        the latest visit to its station that began before the handling.
         """
         frame = framed(self.recorder.visits)
         frame = frame.sort_values(["station", "begin_s"], ignore_index=True)
@@ -144,12 +144,12 @@ class Logs:
         return frame
 
     def _since(self, frame: pd.DataFrame) -> pd.DataFrame:
-        """Keep what happened in the measured time."""
+        """Return the rows of a frame whose time is in the measured time."""
         return frame[frame["time_s"].to_numpy() >= self.start_s]
 
 
 def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
-    """Return a log as a data frame, followed by the rows `more`, which have the same columns."""
+    """Return a log as a data frame, with the rows `more` (with the same columns) appended."""
     import pandas as pd
 
     columns = log.columns()
@@ -160,14 +160,14 @@ def framed(log: Log, more: Sequence[tuple[Any, ...]] = ()) -> pd.DataFrame:
 
 
 def count(index: pd.Series[int], length: int) -> NDArray[np.int64]:
-    """Return how often each of the numbers 0 to length - 1 occurs in `index`, shape (length,)."""
+    """Return how often each number from 0 to `length` - 1 occurs in `index`; shape (length,)."""
     return np.bincount(index.to_numpy(), minlength=length)
 
 
 def _visit_of(
     visits: pd.DataFrame, station: NDArray[np.int64], time_s: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """Return the visit during which something was handled at a station and time."""
+    """Return, for each station and time, the row of the visit that had begun last."""
     found = np.zeros(len(station), np.int64)
     for one in np.unique(station):
         rows = np.flatnonzero(visits["station"].to_numpy() == one)

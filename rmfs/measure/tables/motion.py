@@ -102,7 +102,7 @@ HEAT = (
 
 
 def trips(logs: Logs) -> pd.DataFrame:
-    """Make a row per trip that ended during the measured time, sorted by end."""
+    """Return one row per trip that ended in the measured time, sorted by end time."""
     told = logs.recorder.trips
     station = np.full(logs.layout.waypoints, -1)
     station[[one.waypoint for one in logs.layout.stations]] = np.arange(len(logs.layout.stations))
@@ -129,7 +129,7 @@ def trips(logs: Logs) -> pd.DataFrame:
 
 
 def plans(logs: Logs) -> pd.DataFrame:
-    """Make a row per search for the plan of a trip, including searches in the warm-up.
+    """Return one row per search for a route for a trip, including searches in the warm-up.
 
     The table is empty if searches take no simulated time.
     """
@@ -138,7 +138,7 @@ def plans(logs: Logs) -> pd.DataFrame:
 
 
 def heat(logs: Logs) -> pd.DataFrame:
-    """Make a row per waypoint, with visits and waiting times of robots in the measured time."""
+    """Return one row per waypoint: visits and waiting times of robots in the measured time."""
     layout, counted = logs.layout, logs.recorder.heat
     return tidy(
         "heat",
@@ -157,7 +157,7 @@ def heat(logs: Logs) -> pd.DataFrame:
 
 
 def _by_task(layout: Layout, counted: dict[str, NDArray[Any]], what: str) -> dict[str, Any]:
-    """Sum the counts per station, as known to traffic, by kind of task."""
+    """Return the sums of a count by kind of task: one column per kind, one value per waypoint."""
     tasks = list(_PURPOSES)
     kind_of = {"pick": tasks.index("pick"), "replenishment": tasks.index("replenish")}
     store, rest = tasks.index("store"), tasks.index("rest")

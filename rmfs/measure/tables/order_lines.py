@@ -32,7 +32,7 @@ ORDER_LINES = (
 
 
 def order_lines(logs: Logs) -> pd.DataFrame:
-    """Make a row per line of each order that comes from a file and is in the table `orders`."""
+    """Return one row per order line, for all orders in the table `orders` that come from a file."""
     stream = logs.recorder.order_stream
     orders = seen(logs)
     orders = orders[orders["in_file"] >= 0]
@@ -58,12 +58,12 @@ def order_lines(logs: Logs) -> pd.DataFrame:
 
 
 def with_columns_of(file: OrderFile, line: NDArray[np.int64], frame: pd.DataFrame) -> pd.DataFrame:
-    """Add the additional columns of a file to a table whose rows describe lines of the file.
+    """Add the additional columns of a file of orders or bundles to a table made from the file.
 
     Parameters
     ----------
     line
-        For each row of the table, the index of its line in `file`.
+        For each row of the table, the index in `file` of its order line or bundle.
     frame
         The table, which is changed and returned.
     """

@@ -51,7 +51,7 @@ ORDERS = (
 
 
 def orders(logs: Logs) -> pd.DataFrame:
-    """Make a row per order that was waiting, open, completed or cancelled in the measured time."""
+    """Return one row per order waiting, open, completed or cancelled during the measured time."""
     frame = seen(logs)
     frame["name"] = _names(logs, frame.pop("in_file"))
     frame["priority"] = _priorities(logs, frame["priority"])
@@ -74,7 +74,7 @@ def seen(logs: Logs) -> pd.DataFrame:
 
 
 def _priorities(logs: Logs, number: pd.Series[int]) -> NDArray[Any]:
-    """Return the names of classes by their numbers."""
+    """Return the class name of each order, given the number of its class."""
     due = logs.recorder.due
     names = due.names if isinstance(due, ClassesDue) else ()
     # orders without a class have number -1, the last element
@@ -82,7 +82,7 @@ def _priorities(logs: Logs, number: pd.Series[int]) -> NDArray[Any]:
 
 
 def _names(logs: Logs, in_file: pd.Series[int]) -> NDArray[Any]:
-    """Return the names of orders by their positions in the file."""
+    """Return the name of each order, given its position in the file of orders."""
     stream = logs.recorder.order_stream
     if stream is None or stream.file is None:
         return np.full(len(in_file), "", dtype=object)
@@ -91,7 +91,7 @@ def _names(logs: Logs, in_file: pd.Series[int]) -> NDArray[Any]:
 
 
 def _pods(logs: Logs, order: pd.Series[int]) -> NDArray[np.int64]:
-    """Return the number of pods from which units were picked for each order."""
+    """Return, for each order, the number of pods from which its units were picked."""
     pods = logs.layout.pods
     both = np.unique(logs.units["order"].to_numpy() * pods + logs.units["pod"].to_numpy())
     number = np.bincount(both // pods, minlength=int(order.max()) + 1 if len(order) else 0)
@@ -99,5 +99,5 @@ def _pods(logs: Logs, order: pd.Series[int]) -> NDArray[np.int64]:
 
 
 def completed(frame: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows of completed orders."""
+    """Return the rows of completed orders from a table of orders."""
     return frame[frame["completed_s"].notna()]

@@ -1,7 +1,7 @@
 """The tables of parcels and totes; empty if the scenario has no packing.
 
-An order becomes a parcel when it, or the first part of it, leaves a pick station. Each part of a
-split order leaves in a tote of its own.
+An order becomes a parcel when its first tote leaves a pick station. A split order has one tote for
+each of its parts; any other order has one tote.
 """
 
 from __future__ import annotations
@@ -68,9 +68,10 @@ TOTES = (
 
 
 def parcels(logs: Logs) -> pd.DataFrame:
-    """Make a row per order that has left a pick station at least in part, in order of arrival.
+    """Return one row per order of which at least one tote has left its pick station.
 
-    Orders packed before the measured time are left out.
+    The rows are sorted by the arrival of the orders. Orders packed before the measured time are
+    left out.
     """
     frame = _seen(logs).sort_values("order", ignore_index=True)
     frame["cycle_s"] = frame["packed_s"] - frame["created_s"]
@@ -78,7 +79,7 @@ def parcels(logs: Logs) -> pd.DataFrame:
 
 
 def totes(logs: Logs) -> pd.DataFrame:
-    """Make a row per tote of the orders in the table of parcels."""
+    """Return one row per tote that has left its pick station, for the orders in `parcels`."""
     frame = framed(logs.recorder.packing.totes)
     frame = frame[frame["order"].isin(_seen(logs)["order"])]
     frame = frame.sort_values(["order", "released_s"], kind="stable", ignore_index=True)
@@ -86,6 +87,6 @@ def totes(logs: Logs) -> pd.DataFrame:
 
 
 def _seen(logs: Logs) -> pd.DataFrame:
-    """Return the orders that were not packed before the measured time."""
+    """Return the parcels that were not packed before the measured time."""
     frame = framed(logs.recorder.packing.parcels)
     return frame[~(frame["packed_s"] < logs.start_s)]

@@ -47,7 +47,7 @@ PICKERS = (
 
 
 def pickers(logs: Logs) -> pd.DataFrame:
-    """Make a row per picker of the scenario: presence, work and errors in the measured time."""
+    """Return one row per picker: presence, work and errors in the measured time."""
     staff = logs.recorder.pickers.staff
     people = [] if staff is None else staff.pickers
     number = len(people)
@@ -97,7 +97,7 @@ def _within(
     end_s: pd.Series[float],
     number: int,
 ) -> NDArray[np.float64]:
-    """Sum, per picker, the parts of some periods that lie in the measured time."""
+    """Return each picker's total time in the given periods, within the measured time, in s."""
     edges = np.array([logs.start_s, logs.end_s])
     who, begin, end = picker.to_numpy(), begin_s.to_numpy(), end_s.to_numpy()
     return np.array(

@@ -1,4 +1,4 @@
-"""Service by priority: how many orders of each class were done on time, and their lateness."""
+"""The table of service by priority class: orders done on time, and lateness of orders."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ PRIORITIES = (
 
 
 def priorities(logs: Logs) -> pd.DataFrame:
-    """Make a row per class of orders: its service in the measured time."""
+    """Return one row per priority class: the service of its orders in the measured time."""
     orders, names, weights = served(logs), class_names(logs), class_weights(logs)
     rows = [
         {"priority": name, "weight": weight, **_of(orders[orders["class"] == number])}
@@ -68,7 +68,7 @@ def priorities(logs: Logs) -> pd.DataFrame:
 
 
 def class_names(logs: Logs) -> tuple[str, ...]:
-    """Return the names of the classes of orders, the most urgent first."""
+    """Return the names of the priority classes, the most urgent first."""
     due = logs.recorder.due
     if isinstance(due, ClassesDue):
         return due.names
@@ -76,7 +76,7 @@ def class_names(logs: Logs) -> tuple[str, ...]:
 
 
 def class_weights(logs: Logs) -> tuple[float, ...]:
-    """Return the weight of the lateness of each class, in the order of `class_names`."""
+    """Return the weight of lateness in each priority class, in the order of `class_names`."""
     due = logs.recorder.due
     if isinstance(due, ClassesDue):
         return tuple(one.weight for one in due.classes)
@@ -84,16 +84,19 @@ def class_weights(logs: Logs) -> tuple[float, ...]:
 
 
 def served(logs: Logs) -> pd.DataFrame:
-    """Return the orders by which service is measured, one per row.
+    """Return the orders by which service is measured, one row per order.
+
+    An order is done when it is packed or, in scenarios without packing, completely picked. Orders
+    done or cancelled before the measured time are excluded.
 
     Returns
     -------
     DataFrame
-        Columns `order`, `created_s`, `due_s`, `done_s` (when the order was packed or, without
-        packing, picked; empty if not yet), `cancelled_s`, `class` (position of its name in
-        `class_names`), and the flags `done`, `cancelled`, `overdue` (neither done nor cancelled,
-        and due before the end) and `on_time`. Orders done or cancelled before the measured time are
-        excluded. An order that is neither done nor cancelled nor overdue has only false flags.
+        Columns `order`, `created_s`, `due_s`, `done_s` (empty if the order is not done),
+        `cancelled_s`, `class` (index in `class_names`), and the flags `done`, `cancelled`,
+        `overdue` (neither done nor cancelled, and due before the end of the run) and `on_time`
+        (done by the due time). All flags are false for an order that still waits and is not
+        overdue.
     """
     frame = seen(logs)[["order", "created_s", "due_s", "completed_s", "cancelled_s"]]
     frame = frame.rename(columns={"completed_s": "done_s"})
@@ -125,7 +128,7 @@ def _classes(logs: Logs, frame: pd.DataFrame) -> NDArray[np.int64]:
 
 
 def _of(orders: pd.DataFrame) -> dict[str, Any]:
-    """Return the columns for the orders of a class."""
+    """Return the values of the row for the orders of one class, by column."""
     done = orders[orders["done"]]
     lateness, cycle = done["done_s"] - done["due_s"], done["done_s"] - done["created_s"]
     counted = int((orders["done"] | orders["cancelled"] | orders["overdue"]).sum())

@@ -1,4 +1,4 @@
-"""The table of robots, and how many of them have a task of a given kind at any time."""
+"""The table of robots, and the number of robots with a given kind of task over time."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ _ENERGY = (
 
 
 def robots(logs: Logs) -> pd.DataFrame:
-    """Make a row per robot: its distances, times and counts in the measured time."""
+    """Return one row per robot: distances, times and counts in the measured time."""
     number, motion = logs.layout.robots, logs.recorder.motion
     columns: dict[str, Any] = {
         "robot": np.arange(number),
@@ -105,7 +105,7 @@ def robots(logs: Logs) -> pd.DataFrame:
 
 
 def with_task(logs: Logs, task: str) -> Steps:
-    """Return, over time, the number of robots with a task of the given kind, warm-up included."""
+    """Return the number of robots with a given kind of task over time, including the warm-up."""
     own = logs.tasks[logs.tasks["kind"].to_numpy() == TASKS.index(task)]
     # a task still under way at the end of the run counts up to the end
     ends = own["end_s"].mask(own["end_s"] >= logs.end_s)

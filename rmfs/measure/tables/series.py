@@ -109,9 +109,10 @@ SERIES = (
 
 
 def series(logs: Logs) -> pd.DataFrame:
-    """Make a row per minute of the measured time; the last row may cover less than a minute.
+    """Return one row per minute of the measured time; the last row may cover less than a minute.
 
-    Counts and means cover the minute; backlogs, stock, tasks and batteries are those at its end.
+    Counts and means refer to the whole minute; backlogs, stock, tasks and battery levels refer to
+    its end.
     """
     ends = np.array([time for time, _ in logs.recorder.samples])
     edges = np.concatenate([[logs.start_s], ends])
@@ -152,9 +153,9 @@ def series(logs: Logs) -> pd.DataFrame:
 
 
 def motion_per_interval(logs: Logs) -> dict[str, Floats]:
-    """Return, by name, the fleet's total distances (m) and times (s) in each interval.
+    """Return the fleet's distances (m) and times (s) in each interval, as arrays by name.
 
-    The names are those of `MotionCounts.motion`; an interval is a row of the table.
+    The names are those of `MotionCounts.motion`; the intervals are the rows of the table `series`.
     """
     samples = logs.recorder.samples
     names = samples[0][1].keys()
@@ -162,7 +163,7 @@ def motion_per_interval(logs: Logs) -> dict[str, Floats]:
 
 
 def inventory_share(logs: Logs) -> Steps:
-    """Return the space used by stored units as a share of the capacity of all pods, over time."""
+    """Return the used share of the capacity of all pods as a function of time."""
     inventory = logs.world.inventory
     taken = -inventory.unit_space[logs.units["sku"].to_numpy()]
     time = np.concatenate([logs.units["time_s"].to_numpy(), logs.stored["time_s"].to_numpy()])
@@ -172,7 +173,7 @@ def inventory_share(logs: Logs) -> Steps:
 
 
 def _busy_share(logs: Logs, edges: Floats, kind: str) -> Floats:
-    """Return the share of each interval that the stations of one kind were busy."""
+    """Return the mean busy share of the stations of one kind in each interval."""
     chosen = [
         number for number, station in enumerate(logs.layout.stations) if station.kind.name == kind
     ]

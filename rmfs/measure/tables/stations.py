@@ -88,7 +88,7 @@ STATIONS = (
 
 
 def stations(logs: Logs) -> pd.DataFrame:
-    """Make a row per station: pick stations first, then replenishment stations, then others."""
+    """Return one row per station: first pick stations, then replenishment stations, then others."""
     layout = logs.layout
     number = len(layout.stations)
     place = np.array([station.waypoint for station in layout.stations], np.int64)
@@ -137,7 +137,7 @@ def stations(logs: Logs) -> pd.DataFrame:
 
 
 def busy_until(logs: Logs, station: int, at_s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return, for each time in `at_s`, the total time a station has been busy by then, in s."""
+    """Return the total busy time of a station, in s, from time zero to each time in `at_s`."""
     own = logs.busy[logs.busy["station"].to_numpy() == station]
     return covered(own["begin_s"].to_numpy(), own["end_s"].to_numpy(), at_s)
 
@@ -145,14 +145,14 @@ def busy_until(logs: Logs, station: int, at_s: NDArray[np.float64]) -> NDArray[n
 def _at_pile_on(
     layout: Layout, station: Station, units_per_visit: float, *, with_pickers: bool
 ) -> float:
-    """Return the rate of a pick station; without any visit, as if pods never changed."""
+    """Return the units per hour of a pick station; without visits, as if pods never changed."""
     if not isinstance(station, PickStation) or with_pickers:
         return float("nan")
     return units_per_h(layout, station, units_per_visit if units_per_visit > 0 else float("inf"))
 
 
 def _per(amount: NDArray[np.int64], visits: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Divide; empty if there was no visit."""
+    """Return the amount per visit at each station; nan if it had no visit."""
     result = np.full(len(visits), np.nan)
     np.divide(amount, visits, out=result, where=visits > 0)
     return result
@@ -173,7 +173,7 @@ def _without_work(logs: Logs, station: int) -> float:
 
 
 def _mean_visit(visits: pd.DataFrame, stations: int) -> NDArray[np.float64]:
-    """Return the mean length of the visits that ended, in s; nan without any."""
+    """Return the mean duration of completed visits to each station, in s; nan if there are none."""
     ended = visits[visits["end_s"].notna()]
     length = (ended["end_s"] - ended["begin_s"]).to_numpy()
     number = count(ended["station"], stations)
@@ -184,7 +184,7 @@ def _mean_visit(visits: pd.DataFrame, stations: int) -> NDArray[np.float64]:
 
 
 def _active_share(logs: Logs, station: int) -> float:
-    """Return the share of the measured time a station was active; all are at the start."""
+    """Return the share of the measured time in which a station was active; initially, all are."""
     own = logs.switches[logs.switches["station"].to_numpy() == station]
     change = np.diff(np.concatenate([[1.0], own["active"].to_numpy(np.float64)]))
     return Steps(own["time_s"].to_numpy(), change, 1.0).mean(logs.start_s, logs.end_s)

@@ -48,7 +48,7 @@ SKUS = (
 
 
 def pods(logs: Logs) -> pd.DataFrame:
-    """Make a row per pod: counts in the measured time, and the pod's state at the end."""
+    """Return one row per pod: counts in the measured time, and the pod's state at the end."""
     number, visits = logs.layout.pods, logs.visits
     return tidy(
         "pods",
@@ -68,7 +68,7 @@ def pods(logs: Logs) -> pd.DataFrame:
 
 
 def skus(logs: Logs) -> pd.DataFrame:
-    """Make a row per SKU: counts in the measured time, and the units in stock at the end."""
+    """Return one row per SKU: counts in the measured time, and the units in stock at the end."""
     known = logs.world.skus
     number, contained = len(known), logs.world.inventory.contained
     return tidy(
@@ -89,5 +89,5 @@ def skus(logs: Logs) -> pd.DataFrame:
 
 
 def names_of_skus(skus: SkuSet) -> list[str]:
-    """Return the names of all SKUs, or their numbers as texts if the SKUs have no names."""
+    """Return the names of all SKUs or, if they have no names, their numbers as strings."""
     return list(skus.names) or [str(number) for number in skus.ids.tolist()]

@@ -1,4 +1,4 @@
-"""Brings the columns of a table into their declared order and types."""
+"""Conversion of a table to the declared order and types of its columns."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @cache
 def _dtype(name: str) -> Any:
-    """Return the type of that name; pandas takes longer to look it up than to convert to it."""
+    """Return the pandas type `name`; cached, since the lookup takes longer than a conversion."""
     import pandas as pd
 
     return pd.api.types.pandas_dtype(name)
@@ -34,14 +34,17 @@ def tidy(
     Parameters
     ----------
     table
-        Name of the table, for errors.
+        Name of the table in error messages.
+    declared
+        The columns of the result.
     columns
-        By name, arrays, lists or series of the same length; a single value is repeated in all rows.
+        Values of each column, by its name: an array, list or series, or a single value for all
+        rows.
 
     Raises
     ------
     ValueError
-        If a column is missing or not declared.
+        If a declared column is missing, or a given column is not declared.
     TypeError, ValueError, OverflowError
         If a value does not fit the declared type.
     """
@@ -66,7 +69,7 @@ def tidy(
 
 
 def _of_type(column: Any, dtype: Any, rows: int) -> Any:
-    """Return a copy of a column that has its type already, or None; pandas takes far longer."""
+    """Return a copy of a column if it already has the type (faster than pandas), else None."""
     if isinstance(column, np.ndarray) and column.dtype == dtype and column.shape == (rows,):
         return column.copy()
     if isinstance(column, list) and rows == 1 and _PLAIN.get(dtype) is type(column[0]):

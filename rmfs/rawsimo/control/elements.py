@@ -1,7 +1,8 @@
 """Conversion of the XML elements of RAWSim-O's controller configurations (.xconf).
 
-There is one class per kind of value. Each converts an element to the parameter `key` of rmfs. For
-an absent element, RAWSim-O's default is written explicitly, as the default of rmfs may differ.
+There is one class per kind of value. An object of such a class converts an element to the parameter
+`key` of rmfs. If the element is absent, the parameter is set to RAWSim-O's default, because the
+default of rmfs may differ.
 """
 
 from __future__ import annotations
@@ -50,14 +51,14 @@ class Switch(NamedTuple):
 
 
 class Word(NamedTuple):
-    """An element that contains one of several words, each of which stands for a value in rmfs."""
+    """An element that contains one of the words `choices`, each mapped to a value in rmfs."""
 
     key: str
     choices: Mapping[str, str] | Mapping[str, bool]
     default: str
 
     def read(self, block: Settings, tag: str) -> Any:
-        """Return the value in rmfs for which the word in the element stands."""
+        """Return the value in rmfs to which the word in the element is mapped."""
         return block.choice(tag, self.choices, self.default)
 
 
@@ -73,7 +74,7 @@ class Complement(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """An element that contains numbers: separated by commas, or each in a child element."""
+    """An element that contains numbers, separated by commas or one in each child element."""
 
     key: str
     default: tuple[float, ...]
@@ -103,9 +104,9 @@ class Rule:
     name
         Name of the rule or criterion in rmfs.
     elements
-        Conversions of the elements that are used, by tag.
+        Conversions of the elements that are used, by their tags.
     left
-        Reasons why the other known elements are not used, by tag.
+        Elements that are known but not used: the reason for each, by its tag.
     """
 
     name: str
@@ -114,12 +115,12 @@ class Rule:
 
 
 def translated(block: Settings, rule: Rule) -> Table:
-    """Return the table of a rule for a controllers file, and note the elements in `rule.left`.
+    """Return the table of a rule for a controllers file; add notes on unused elements.
 
     Raises
     ------
     InputError
-        If a value is wrong.
+        If a value is invalid.
     """
     for reason in dict.fromkeys(rule.left.values()):
         block.leave([tag for tag, told in rule.left.items() if told == reason], reason)
@@ -127,5 +128,5 @@ def translated(block: Settings, rule: Rule) -> Table:
 
 
 def values_of(block: Settings, elements: Mapping[str, Element]) -> Table:
-    """Return the parameters of rmfs, by name, as given by the elements of a block."""
+    """Return the values of rmfs parameters, by name, converted from the elements of a block."""
     return {element.key: element.read(block, tag) for tag, element in elements.items()}

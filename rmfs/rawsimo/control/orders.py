@@ -137,7 +137,7 @@ def poa(kind: str, block: Settings) -> Table:
     Raises
     ------
     InputError
-        If a value is wrong.
+        If a value is invalid.
     """
     if kind == "Default":
         name = block.choice("OrderSelectionRule", _SELECTIONS, "Random")
@@ -150,7 +150,7 @@ def poa(kind: str, block: Settings) -> Table:
 
 
 def _foresight(block: Settings) -> Table:
-    """Map the two score functions, known by what their types end in."""
+    """Map the two score functions, which are recognised by the ends of their type names."""
     found = []
     for tag in block.tags:
         told = block.kind_of(tag)
@@ -178,7 +178,7 @@ def _queue(block: Settings) -> Table:
 
 
 def _criterion(block: Settings, rule: Rule) -> Table:
-    """Return a criterion; what the one element of a type is called does not matter."""
+    """Return a criterion; its element, if any, is read whatever the name of the element is."""
     tags = [tag for tag in block.tags if tag != "Name"]
     elements = dict(zip(tags, rule.elements.values(), strict=False))
     return {"criterion": rule.name, **values_of(block, elements)}

@@ -59,8 +59,8 @@ def mm(kind: str, block: Settings) -> Table:
     Raises
     ------
     InputError
-        If a value is wrong, or the block names a pod storage rule that RAWSim-O itself cannot
-        install during a run.
+        If a value is invalid, or the block names a pod storage rule to which RAWSim-O itself cannot
+        change during a run.
     """
     if kind == "Random":
         exchanges = block.switch("ExchangePodStorage", default=True)

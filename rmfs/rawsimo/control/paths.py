@@ -101,8 +101,8 @@ PP = (*_RULES, "Simple", "Dummy")
 def pp(kind: str, block: Settings) -> Table:
     """Convert a path planning method of RAWSim-O to the table `pp` of a controllers file.
 
-    The methods Simple and Dummy, which rmfs lacks, are replaced by `time-windows`. With the others,
-    a robot is granted one straight stretch of its path at a time, as in RAWSim-O.
+    The methods Simple and Dummy, which rmfs lacks, are replaced by `time-windows`. With the other
+    methods, a robot is granted one straight run of its path at a time, as in RAWSim-O.
     """
     if kind in _RULES:
         return {**translated(block, _RULES[kind]), "runs_granted": 1}

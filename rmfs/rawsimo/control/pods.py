@@ -176,7 +176,7 @@ def repositioning(kind: str, block: Settings) -> Table:
 
 
 def _zones(kind: str, block: Settings) -> Table:
-    """Map the zones, which stand in a block of their own."""
+    """Convert the parameters of zones, which may be in a nested block."""
     if kind not in ("Cache", "CacheDropoff"):
         return {}
     nested = [tag for tag in block.tags if "Zon" in tag and tag not in ZONES]

@@ -183,8 +183,8 @@ def ta(kind: str, block: Settings) -> Table:
 def pps(kind: str, block: Settings) -> Table:
     """Convert a task allocation method's pod selection to the table `pps` of a controllers file.
 
-    For methods that choose pods themselves (Random, BruteForce), the table has the rule `dummy`,
-    with `late_picks` and `late_bundles` (late binding) false.
+    For task allocation methods that choose pods themselves (Random, BruteForce), the table names
+    the rule `dummy` and switches late binding off (`late_picks` and `late_bundles` are false).
     """
     selection = block.block("PodSelectionConfig")
     if kind in ("Random", "BruteForce"):
@@ -217,7 +217,7 @@ def pps(kind: str, block: Settings) -> Table:
 
 
 def _next_stations(selection: Settings, table: Table) -> None:
-    """Map the two lists of criteria of stations, for which we have one."""
+    """Convert RAWSim-O's two lists of criteria for stations to the single list of rmfs."""
     usual = ("WorkAmount", "Nearest", "Random")
     picks = _criteria(selection, "OutputExtendedSearchScorer", _NEXT_PICK, usual)
     bundles = _criteria(selection, "InputExtendedSearchScorer", _NEXT_REPLENISHMENT, usual)
@@ -236,7 +236,7 @@ def _next_stations(selection: Settings, table: Table) -> None:
 def _criteria(
     selection: Settings, tag: str, rules: dict[str, Rule], usual: tuple[str, str, str]
 ) -> list[Table]:
-    """Return a criterion and its two tie breakers; absent ones are the usual ones."""
+    """Return a criterion and its two tie breakers; `usual` replaces those that are absent."""
     found = []
     for end, default in zip(("", "TieBreaker1", "TieBreaker2"), usual, strict=True):
         block = selection.block(tag + end)

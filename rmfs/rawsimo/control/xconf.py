@@ -1,7 +1,7 @@
 """Reader for RAWSim-O's controller configurations (.xconf).
 
-Every element is mapped to a rule or parameter of rmfs, or listed in a note with the reason why it
-is not.
+Every element is either mapped to a rule or parameter of rmfs, or listed in a note that states why
+it is not used.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ ROOT = "ControlConfiguration"
 
 
 class _Block(NamedTuple):
-    """One of the nine blocks: its element, its usual method, and how to read it."""
+    """One of the nine blocks: tag, default method, known methods, and function that reads it."""
 
     tag: str
     usual: str
@@ -47,14 +47,14 @@ _COMMENTS = ("CommentTag1", "CommentTag2", "CommentTag3")
 
 
 class ImportedControllers(NamedTuple):
-    """The contents of a controller configuration.
+    """The controllers read from a controller configuration.
 
     Attributes
     ----------
     table
         The configuration as the table of a controllers file, not yet validated.
     notes
-        What was left out, and what differs in rmfs.
+        Remarks on what was left out, and on differences in rmfs.
     """
 
     table: Table
@@ -62,13 +62,13 @@ class ImportedControllers(NamedTuple):
 
 
 def read_xconf(path: Path) -> ImportedControllers:
-    """Read a controller configuration; elements missing in it take RAWSim-O's defaults.
+    """Read a controller configuration; missing elements take RAWSim-O's defaults.
 
     Raises
     ------
     InputError
-        If the file is not a controller configuration, or a method is unknown or has no counterpart
-        in rmfs, or a value is wrong.
+        If the file is not a controller configuration, a method is unknown or has no counterpart in
+        rmfs, or a value is invalid.
     """
     notes: list[str] = []
     root = Settings(read_root(path, ROOT), path, notes)
@@ -93,7 +93,7 @@ def read_xconf(path: Path) -> ImportedControllers:
 
 
 def _method(given: _Block, block: Settings, root: Settings) -> str:
-    """Return the method of a block, which its type names."""
+    """Return the method that the type of a block names."""
     suffix = f"{given.tag.removesuffix('Config')}Configuration"
     method = block.kind.removesuffix(suffix) or given.usual
     if method not in given.methods:
@@ -106,10 +106,10 @@ def _method(given: _Block, block: Settings, root: Settings) -> str:
 
 
 def _let_robots_decide(table: Table, notes: list[str]) -> None:
-    """Put rules that decide where theirs leaves it to the robots and ours does not, or inversely.
+    """Replace rules where RAWSim-O and rmfs differ in what the robots decide themselves.
 
-    Brute force chooses pods and parks them here as there; but it takes bundles to the pods that RPS
-    has chosen, and leaves their stations to ROA.
+    In both, brute force chooses the pods and stores them. In rmfs, however, it takes bundles to the
+    pods that RPS has chosen, and ROA chooses the stations of bundles.
     """
     brute = table["ta"]["name"] == "brute-force"
     if brute and table["psa"]["name"] != "dummy":

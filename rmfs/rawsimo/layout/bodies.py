@@ -28,11 +28,10 @@ _POD_RADIUS_M = 0.45
 def pods(
     instance: Instance, waypoints: list[Table], occupants: Occupants
 ) -> tuple[list[Table], float]:
-    """Return the pods, and the largest of their radii in m.
+    """Return the pods, and the largest pod radius in m.
 
-    A pod is put at the waypoint that names it or, if there is none, at the storage location on its
-    tier that is nearest to its coordinates. If the file contains no pods, the radius is RAWSim-O's
-    default.
+    A pod is put at the waypoint that names the pod. If no waypoint does, it is put at the nearest
+    storage location on its tier. If the file contains no pods, the radius is RAWSim-O's default.
     """
     nearest = _Nearest(waypoints, [bool(waypoint["storage"]) for waypoint in waypoints])
     radii: Counter[float] = Counter()
@@ -61,8 +60,8 @@ def pods(
 def robots(instance: Instance, waypoints: list[Table]) -> tuple[list[Table], list[Table]]:
     """Return the kinds of robots, and the robots.
 
-    Robots whose parameters, such as top speed, are all equal are of one kind. Each robot is put at
-    the waypoint on its tier that is nearest to its coordinates.
+    Robots with the same parameters (top speed and so on) form a kind. Each robot is put at the
+    nearest waypoint on its tier.
     """
     nearest = _Nearest(waypoints, [True] * len(waypoints))
     kinds: dict[tuple[float, ...], int] = {}

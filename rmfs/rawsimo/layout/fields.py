@@ -1,4 +1,4 @@
-"""Typed access to the attributes of RAWSim-O's XML elements; all errors are collected."""
+"""Typed access to the attributes of RAWSim-O's XML elements; errors are collected."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ class Problems:
         Raises
         ------
         InputError
-            If errors were added; the message is one line with the first errors and the number of
-            the others.
+            If errors were added. The message is a single line with the first errors and the number
+            of further errors.
         """
         stop_if_any(self.found, source)
 
@@ -42,10 +42,10 @@ class Fields:
     Parameters
     ----------
     element
-        The element; messages name its tag and `ID`.
+        The element. Error messages contain its tag and its attribute `ID`.
     problems
-        Collection to which an error is added for each missing or wrong value; the value is then
-        read as 0 or false.
+        Collection of errors. For each missing or invalid value, an error is added and 0 or false is
+        returned instead.
     """
 
     def __init__(self, element: Element, problems: Problems) -> None:
@@ -54,11 +54,14 @@ class Fields:
 
     @property
     def label(self) -> str:
-        """Name of the element in messages."""
+        """The name of the element in error messages."""
         return f"{self._element.tag} {self._element.get('ID', '(without ID)')}"
 
     def number(self, name: str, default: float | None = None) -> float:
-        """Return the finite number in an attribute, which is required if `default` is None."""
+        """Return the finite number in an attribute, or `default` if the attribute is missing.
+
+        A missing attribute is an error if `default` is None.
+        """
         text = self._element.get(name)
         if text is None and default is not None:
             return default
@@ -72,7 +75,10 @@ class Fields:
         return value
 
     def whole(self, name: str, default: int | None = None) -> int:
-        """Return the integer in an attribute, which is required if `default` is None."""
+        """Return the integer in an attribute, or `default` if the attribute is missing.
+
+        A missing attribute is an error if `default` is None.
+        """
         text = self._element.get(name)
         if text is None and default is not None:
             return default
@@ -83,7 +89,7 @@ class Fields:
             return 0
 
     def switch(self, name: str) -> bool:
-        """Return the truth value in an attribute; if the attribute is absent, it is false."""
+        """Return the truth value in an attribute; false if the attribute is missing."""
         text = self._element.get(name, "false")
         if text not in ("true", "false", "1", "0"):
             self._wrong(name, "true or false", text)
@@ -95,6 +101,6 @@ class Fields:
 
 
 def slashed(text: str | None, parts: int) -> list[str] | None:
-    """Return the parts of a text such as "a/b/c", or None if their number is not `parts`."""
+    """Return the parts of a text such as "a/b/c"; None if there are not exactly `parts` parts."""
     found = (text or "").strip().split("/")
     return found if len(found) == parts else None

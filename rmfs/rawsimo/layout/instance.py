@@ -1,6 +1,6 @@
-"""Access by kind and id to the elements of RAWSim-O's explicit instances (.xinst).
+"""Access to the elements of RAWSim-O's explicit instances (.xinst) by kind and id.
 
-Unknown elements and attributes are noted.
+Unknown elements and attributes are listed in remarks.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class Instance:
     problems
         Errors that make the file unusable.
     remarks
-        What was left out or filled in.
+        Remarks on what was left out or filled in.
     """
 
     def __init__(self, root: Element) -> None:
@@ -91,7 +91,7 @@ class Instance:
         self._survey_meaning()
 
     def elements(self, kind: str) -> list[Element]:
-        """Return the elements of a kind, such as `Pod`, in the order of the file."""
+        """Return the elements of a kind, such as `Pod`, in their order in the file."""
         return self._elements[kind]
 
     def fields(self, kind: str) -> Iterator[Fields]:
@@ -103,7 +103,7 @@ class Instance:
         return name in self._index[kind]
 
     def position(self, kind: str, name: int, where: str) -> int:
-        """Return the index of the element with the id `name` among the elements of the kind.
+        """Return the index, among the elements of a kind, of the element with the id `name`.
 
         If there is no such element, an error is added and the result is 0.
         """
@@ -134,7 +134,7 @@ class Instance:
         return positions
 
     def _survey(self, root: Element) -> None:
-        """Remark on every element and attribute that is not known."""
+        """Add remarks on all unknown elements and attributes."""
         unknown = Unknown()
         unknown.attributes(root, ("Name",))
         unknown.children(root, _LISTS)
@@ -149,7 +149,7 @@ class Instance:
         self.remarks += unknown.notes()
 
     def _survey_meaning(self) -> None:
-        """Remark on what is known but has no meaning here."""
+        """Add remarks on known elements and attributes that have no meaning in rmfs."""
         if semaphores := self._elements["Semaphore"]:
             self.remarks.append(
                 f"{len(semaphores)} semaphores left out: only RAWSim-O's legacy robots obey them"

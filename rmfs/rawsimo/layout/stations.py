@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 def pick_stations(instance: Instance, occupants: Occupants) -> list[Table]:
     """Return the pick stations.
 
-    A unit occupies the station for the ItemTransferTime and the robot for the ItemPickTime. If the
-    latter is missing or 0, the robot is occupied for the ItemTransferTime, as in RAWSim-O.
+    Each unit occupies the station for the ItemTransferTime and the robot for the ItemPickTime. If
+    the ItemPickTime is missing or 0, the unit occupies the robot for the ItemTransferTime as well
+    (as in RAWSim-O).
     """
     ranks = _ranks(instance, "OutputStation")
     stations, without = [], 0
@@ -62,7 +63,7 @@ def replenishment_stations(instance: Instance, occupants: Occupants) -> list[Tab
 
 
 def elevators(instance: Instance) -> tuple[list[Table], set[tuple[int, int]]]:
-    """Return the elevators, and all pairs (origin, destination) of waypoints that they join."""
+    """Return the elevators and, as pairs (origin, destination) of waypoints, all their rides."""
     found: list[Table] = []
     pairs: set[tuple[int, int]] = set()
     for element in instance.elements("Elevator"):
@@ -86,7 +87,7 @@ def elevators(instance: Instance) -> tuple[list[Table], set[tuple[int, int]]]:
 
 
 def _rides(instance: Instance, element: Element, label: str) -> list[Table]:
-    """Return the timings of an elevator."""
+    """Return the rides of an elevator, with their travel times."""
     rides: list[Table] = []
     for entry in element.iterfind("Timings/Timing"):
         parts = slashed(entry.text, 3)
@@ -108,7 +109,7 @@ def _rides(instance: Instance, element: Element, label: str) -> list[Table]:
 
 
 def _ranks(instance: Instance, kind: str) -> list[int]:
-    """Return activation ranks from 1: those of the file if it has them, else by position."""
+    """Return the ranks of stations, from 1, by ActivationOrderID and then by order in the file."""
     given = [fields.whole("ActivationOrderID", 0) for fields in instance.fields(kind)]
     order = sorted(range(len(given)), key=lambda position: (given[position], position))
     ranks = [0] * len(given)
@@ -152,7 +153,7 @@ def _queues(instance: Instance, element: Element, label: str) -> dict[int, list[
 
 
 def _headed(instance: Instance, queue: list[int], head: int, label: str) -> list[int]:
-    """Make sure that a queue begins where it is served."""
+    """Return a queue that begins at `head`, the waypoint at which it is served."""
     if not queue:
         instance.remarks.append(f"{label}: has no queue; its own waypoint is its only queue place")
     elif queue[0] != head:

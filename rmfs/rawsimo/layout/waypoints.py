@@ -27,7 +27,7 @@ def tiers(instance: Instance) -> list[Table]:
 
 
 def waypoints(instance: Instance) -> tuple[list[Table], Occupants]:
-    """Return the waypoints, still without edges, and the waypoint that names each pod or station.
+    """Return the waypoints, without edges, and for each pod or station the waypoint that names it.
 
     As in RAWSim-O, a waypoint that names a pod or station gets the coordinates of that pod or
     station, and a waypoint that names a pod is a storage location.
@@ -61,7 +61,7 @@ def waypoints(instance: Instance) -> tuple[list[Table], Occupants]:
 def _occupant(
     instance: Instance, fields: Fields, kind: str, waypoint: int, occupants: Occupants
 ) -> Fields | None:
-    """Return the pod or station that a waypoint names, and note where it stands."""
+    """Return the pod or station that a waypoint names, and add it to `occupants`."""
     name = fields.whole(kind, NOBODY)
     if name == NOBODY:
         return None
@@ -77,15 +77,16 @@ def _occupant(
 def add_edges(instance: Instance, waypoints: list[Table], rides: set[tuple[int, int]]) -> None:
     """Add the edges within tiers.
 
-    Edges between tiers are left out, because the rides of elevators take their place. A remark
-    tells how many of them belong to no elevator.
+    Edges between tiers are left out, because the rides of elevators replace them. A remark gives
+    the number of such edges that belong to no elevator.
 
     Parameters
     ----------
     waypoints
-        As returned by `waypoints`; this function fills in their key `to`.
+        The waypoints, as returned by the function `waypoints`. The edges are written to their key
+        `to`.
     rides
-        Pairs (origin, destination) of waypoints that elevators join.
+        Rides of elevators as pairs (origin, destination) of waypoints.
     """
     across = 0
     for v, element in enumerate(instance.elements("Waypoint")):

@@ -19,18 +19,20 @@ SUFFIXES = {".xinst": ".json", ".xlayo": ".toml"}
 
 
 def import_layout(path: Path, target: Path) -> list[str]:
-    """Convert a layout file of RAWSim-O to one of rmfs; return remarks on differences.
+    """Convert a layout file of RAWSim-O to a layout file of rmfs; return remarks on differences.
 
     Parameters
     ----------
     path
         The file of RAWSim-O: .xinst is converted to .json, and .xlayo to .toml.
+    target
+        The file to write.
 
     Raises
     ------
     InputError
-        If the file is of another kind or invalid, or the target has the wrong suffix or cannot be
-        written.
+        If the file of RAWSim-O is invalid or has another suffix, or if the target has the wrong
+        suffix or cannot be written.
     """
     suffix = SUFFIXES.get(path.suffix.lower())
     if suffix is None:

@@ -1,7 +1,7 @@
 """Import of RAWSim-O's explicit instances (.xinst).
 
-The elements are converted to the table of an explicit layout of rmfs, which is then validated like
-one that was read from a file of rmfs. Ids are replaced by indices, in the order of the file.
+The elements are converted to the table of an explicit layout, which is then validated like the
+contents of a layout file of rmfs. Ids are replaced by indices, in the order of the file.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ def read_xlayo_table(path: Path) -> tuple[Table, list[str]]:
     Raises
     ------
     InputError
-        If the file cannot be read or a value has the wrong form; every such value is named.
+        If the file cannot be read or values have the wrong form; the message names all of them.
     """
     root = read_root(path, "LayoutConfiguration")
     table: Table = {"format": "rmfs-layout/1", "name": _DEFAULT_NAME, "robots": 32}
@@ -134,7 +134,7 @@ def _rawsimo_stations() -> Table:
 
 
 def _entry(name: str, text: str) -> tuple[str, Any]:
-    """Return our key and the value of a known element."""
+    """Return the key and the value in rmfs of a known element."""
     if name == "NameLayout":
         return "name", text or _DEFAULT_NAME
     if name == "AisleLayoutType":

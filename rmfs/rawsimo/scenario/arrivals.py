@@ -1,4 +1,4 @@
-"""Conversion of the arrivals of orders and bundles in RAWSim-O's settings files (.xsett)."""
+"""Conversion of arrivals of orders and bundles, as given in RAWSim-O's settings (.xsett)."""
 
 from __future__ import annotations
 
@@ -24,18 +24,19 @@ UNBOUNDED_SHARE = 1000.0
 
 
 class Arrivals:
-    """Conversion of the arrivals in the inventory block.
+    """Conversion of the arrivals in the inventory block of a settings file.
 
     Parameters
     ----------
     block
         The inventory block.
     mode
-        `backlog`, `poisson` or `stream`.
+        How orders arrive: constant backlog (`backlog`), Poisson process (`poisson`), or as listed
+        in a file (`stream`).
     letters
-        Whether SKUs are coloured letters, and orders are words spelled with them.
+        Whether SKUs are coloured letters, and orders are words spelled with these letters.
     file
-        Path of the file with the fixed orders and bundles; None if `mode` is not `stream`.
+        Path of the file that lists the orders and bundles; None if `mode` is not `stream`.
     """
 
     def __init__(self, block: Settings, mode: str, *, letters: bool, file: str | None) -> None:
@@ -130,7 +131,7 @@ class Arrivals:
         )
 
     def _down(self, fill: Settings, demand: Table, replenishment: Table) -> None:
-        """Map down periods, wherever the block stands."""
+        """Convert down periods; their block may be in `fill` or in the inventory block."""
         tag = "DownPeriodConfiguration"
         holder = fill if tag in fill else self._block
         if tag not in holder:
@@ -177,7 +178,7 @@ class Arrivals:
     def _profile(
         self, poisson: Settings, kind: str, word: str, *, high_per_h: float, affected: bool
     ) -> Table:
-        """Map how a rate changes; `word` is Order or Bundle."""
+        """Convert the profile of a rate over time; `word` is Order or Bundle."""
         cycle_s = poisson.number(f"MaxTimeForTimeDependent{word}Rates", _DAY_S)
         weights = poisson.pairs(f"TimeDependent{word}Weights")
         switching = {
@@ -222,10 +223,10 @@ class Arrivals:
 
 
 def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[list[float]]:
-    """Convert changes (time in the cycle, whether down from then on) to down periods [start, end].
+    """Return the down periods [start, end], in s, in which no orders (or bundles) are generated.
 
-    In a down period, no orders (or bundles) are generated. As the cycle repeats, the state after
-    the last change also holds before the first one.
+    Each change is a pair: a time in the cycle, in s, and whether generation is down from this time
+    on. As the cycle repeats, the state after the last change also holds before the first one.
     """
     state = changes[-1][1]
     begin_s = 0.0
@@ -238,7 +239,11 @@ def down_periods(changes: Sequence[tuple[float, bool]], cycle_s: float) -> list[
 
 
 def steps(weights: Sequence[tuple[float, float]]) -> dict[str, Any]:
-    """Return the steps (start, weight) of a rate as keys of a scenario; empty if there are none."""
+    """Convert steps (start in s, weight) of a rate to the keys `starts_s` and `weights`.
+
+    Before the first step of a cycle, the weight of the last step applies. If there are no steps,
+    the result is empty.
+    """
     if not weights:
         return {}
     if weights[0][0] > 0:

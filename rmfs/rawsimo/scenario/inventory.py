@@ -26,14 +26,14 @@ _ORDER_MODES = {"Fill": "backlog", "Poisson": "poisson", "Fixed": "stream"}
 
 
 class Inventory:
-    """Conversion of the inventory block.
+    """Conversion of the inventory block of a settings file.
 
     Parameters
     ----------
     block
-        The block.
+        The inventory block.
     path
-        The settings file; other files are located relative to it.
+        The settings file. The search for other files, named in the block, starts in its folder.
     """
 
     def __init__(self, block: Settings, path: Path) -> None:
@@ -48,7 +48,7 @@ class Inventory:
         Raises
         ------
         InputError
-            If a value is wrong or a file missing.
+            If a value is invalid or a file is missing.
         """
         block = self._block
         # only a list of fixed orders brings its own letters
@@ -104,7 +104,7 @@ class Inventory:
         return {"file": str(find_beside(self._path, named, ".xgenc"))}
 
     def _sizes(self) -> Table:
-        """What an SKU takes and how many come in a bundle, where a SKU file does not say it."""
+        """Return the space per unit and units per bundle of SKUs whose file does not give them."""
         block = self._block
         least = block.number("ItemWeightMin", 5.0)
         most = block.number("ItemWeightMax", 5.0)

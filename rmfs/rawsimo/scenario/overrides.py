@@ -1,4 +1,4 @@
-"""Conversion of the changes that RAWSim-O's settings files (.xsett) make to a layout."""
+"""Converts the changes that RAWSim-O's settings files (.xsett) make to a layout."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ _COUNTS = {
 def layout_overrides(block: Settings) -> list[tuple[list[str], Any]]:
     """Return the changes to the layout that are switched on, as pairs (path of keys, value).
 
-    In the block, each change consists of two elements: a switch, and a value whose name begins with
-    the name of the switch.
+    Each change has two elements in the block (`OverrideConfig`): a switch, and a value. The name of
+    the value begins with the name of the switch.
 
     Raises
     ------

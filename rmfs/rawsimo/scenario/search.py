@@ -1,4 +1,4 @@
-"""Locates the files that RAWSim-O's settings files (.xsett) name."""
+"""Locates the files to which RAWSim-O's settings files (.xsett) refer."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _FOLDERS = (
 
 
 def find_beside(settings: Path, named: str, suffix: str) -> Path:
-    """Find a file that a settings file names.
+    """Return the absolute path of a file to which a settings file refers.
 
     The path `named` is tried first, relative to the folder of the settings file. Then the file is
     sought by its name alone, in that folder and all folders above it; in each of these folders,
@@ -21,14 +21,18 @@ def find_beside(settings: Path, named: str, suffix: str) -> Path:
 
     Parameters
     ----------
+    settings
+        The settings file.
+    named
+        The path given in the settings file; it may be a Windows path.
     suffix
-        Required suffix of the name, so that a settings file of unknown origin cannot cause files
-        of other kinds to be read.
+        Required suffix of the path. It prevents a settings file of unknown origin from causing
+        files of other kinds to be read.
 
     Raises
     ------
     InputError
-        If there is no such file.
+        If the file is not found, or `named` has another suffix.
     """
     # the names were written on Windows
     path = Path(PureWindowsPath(named).as_posix())

@@ -1,6 +1,6 @@
 """Typed access to the elements of RAWSim-O's settings files and controller configurations.
 
-Elements that are not read are noted.
+Elements that are never read are reported in notes.
 """
 
 from __future__ import annotations
@@ -28,16 +28,17 @@ class Settings:
     Parameters
     ----------
     element
-        The root or block; None: the block is absent, and all values are defaults.
+        The root or block. If it is None, the block is absent, and all values are defaults.
     path
         The file, for messages.
     notes
-        Collection to which notes on what is not used or differs are added.
+        List to which notes are added, on elements that are not used and on differences between
+        RAWSim-O and rmfs.
 
     Attributes
     ----------
     kind
-        The type that the block names (attribute xsi:type), or empty.
+        The type of the block (its attribute xsi:type); empty if it has none.
     """
 
     def __init__(self, element: Element | None, path: Path, notes: list[str]) -> None:
@@ -74,7 +75,7 @@ class Settings:
         return default if element is None else (element.text or "").strip()
 
     def kind_of(self, tag: str) -> str:
-        """Return the type that an element names, or empty; the element still counts as unread."""
+        """Return the type of an element, or an empty text; the element still counts as unread."""
         return _kind(self._elements.get(tag))
 
     def choice(self, tag: str, choices: Mapping[str, _T], default: str) -> _T:
@@ -100,7 +101,7 @@ class Settings:
         return default if tag not in self else self._switch(tag, self.text(tag))
 
     def block(self, tag: str) -> Settings:
-        """Return a block within this one, empty if it is absent."""
+        """Return a block within this one; an absent block is treated as empty."""
         self._read.add(tag)
         return Settings(self._elements.get(tag), self._path, self._notes)
 
@@ -129,7 +130,7 @@ class Settings:
         return sorted(found)
 
     def numbers(self, tag: str, default: tuple[float, ...]) -> list[float]:
-        """Return the numbers in an element: one in each child, or else separated by commas."""
+        """Return the numbers in an element: one per child, or a list separated by commas."""
         self._read.add(tag)
         element = self._elements.get(tag)
         if element is None:
@@ -143,14 +144,14 @@ class Settings:
         return {key: number for key, number in numbers.items() if number}
 
     def leave(self, tags: Iterable[str], reason: str) -> None:
-        """Note why the given elements, if present, are not used; count them as read."""
+        """Add a note on why the given elements, if present, are not used; count them as read."""
         present = [tag for tag in tags if tag in self]
         self._read.update(present)
         if present:
             self.note(f"{', '.join(present)} not used: {reason}")
 
     def leave_rest(self) -> None:
-        """Note which elements of the block have not been read."""
+        """Add a note that lists the elements of the block that have not been read."""
         unknown = [tag for tag in self._elements if tag not in self._read]
         if unknown:
             self.note(

@@ -27,7 +27,7 @@ TEXTS = ("Name", "Description")
 
 
 def read_xgenc(path: Path) -> SkuFileContent:
-    """Read a SKU set; the colours of SKUs are not kept.
+    """Read a SKU set; the colours of SKUs are ignored.
 
     Raises
     ------
@@ -74,7 +74,7 @@ class _Reader:
         return values
 
     def _complete(self, section: str) -> NDArray[np.float64] | None:
-        """Positive values of all SKUs from one list, or None if it is empty or missing."""
+        """Return the positive values of all SKUs in a list; None if it is missing or all zero."""
         values = np.zeros(len(self._index))
         for sku, value in self._pairs(section):
             values[self._known(sku)] = self._at_least_zero(value, section)
@@ -110,7 +110,7 @@ class _Reader:
         )
 
     def _pairs(self, section: str) -> Iterator[tuple[int, float]]:
-        """The (SKU, value) pairs of one list; each SKU once."""
+        """Yield the pairs (SKU, value) of a list, in which each SKU may occur only once."""
         seen: set[int] = set()
         for element in self._sections.get(section, ()):
             sku = self._whole(element, "Key")
@@ -127,7 +127,7 @@ class _Reader:
             raise self._error(f"SKU {sku} is not listed in <ItemDescriptions>") from None
 
     def _value(self, section: str, default: float) -> float:
-        """The number that an element of its own gives."""
+        """Return the number in a top-level element; `default` if there is no such element."""
         element = self._sections.get(section)
         if element is None:
             return default

@@ -55,7 +55,7 @@ class OrderList:
         Its SKUs; their popularities are in proportion to the units ordered, or equal if there are
         no orders.
     notes
-        Remarks that tell which elements and attributes are unknown and were ignored.
+        Remarks on unknown elements and attributes, which were ignored.
     """
 
     path: Path
@@ -70,7 +70,7 @@ class OrderList:
         Raises
         ------
         InputError
-            One line that names the first invalid orders.
+            If orders are invalid; the message is one line that names the first of them.
         """
         problems = Problems(self.path)
         rows = OrderRows(skus, problems, "order")
@@ -91,7 +91,7 @@ class OrderList:
         Raises
         ------
         InputError
-            One line that names the first invalid bundles.
+            If bundles are invalid; the message is one line that names the first of them.
         """
         problems = Problems(self.path)
         rows = BundleRows(skus, problems, "bundle", largest)

@@ -47,7 +47,7 @@ class ImportedSettings(NamedTuple):
     table
         The scenario, not yet validated; paths of files in it are absolute.
     notes
-        What was left out, and what differs in rmfs.
+        Notes on settings that were left out, and on differences between RAWSim-O and rmfs.
     layout
         Overrides of the layout: pairs of a key path, which begins with `layout`, and a value.
     """
@@ -63,7 +63,8 @@ def read_xsett(path: Path) -> ImportedSettings:
     Raises
     ------
     InputError
-        If the file is not a settings file, a value is invalid, or a file it names is missing.
+        If the file is not a settings file or contains an invalid value, or a file to which it
+        refers is missing.
     """
     notes: list[str] = []
     settings = Settings(read_root(path, ROOT), path, notes)

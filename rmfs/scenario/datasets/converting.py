@@ -62,22 +62,22 @@ def convert(
         A key of `LAYOUTS`, such as "jd".
     paths
         The files of the data set, in the order of `Layout.files`. Further files with the same
-        columns as the last of these may follow; those of layout olist are ignored.
+        columns as the last one may follow, if the data set is split; layout "olist" ignores them.
     out
         The .csv file to write.
     begin, end
         Only orders from `begin` on and before `end` are used. Default: all orders.
     share
-        Probability with which each of these orders is used.
+        Probability that such an order is used.
     seed
-        Seed of the draws.
+        Seed of the random choice of orders.
 
     Raises
     ------
     InputError
-        If the layout is unknown; a file is missing, cannot be read, lacks a column or has a wrong
-        field; `out` does not end in .csv or cannot be written; dates are given for a layout without
-        dates; no order is left; or there are more than `MOST_LINES` order lines.
+        If the layout is unknown; a file is missing, cannot be read, lacks a column or contains an
+        invalid field; `out` does not end in .csv or cannot be written; `begin` or `end` is given
+        for a layout without dates; no orders remain; or more than `MOST_LINES` order lines remain.
     """
     if layout not in LAYOUTS:
         raise InputError(f"layout {layout!r:.40} is unknown; valid: {', '.join(LAYOUTS)}")

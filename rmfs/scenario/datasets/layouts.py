@@ -38,9 +38,9 @@ class Layout(NamedTuple):
 
 
 def instacart(paths: Sequence[Path], orders: Orders) -> None:
-    """Read orders of which only weekday and hour are known; all are put into one week.
+    """Read orders of which only weekday and hour are known; all are assigned to one week.
 
-    Orders of the same weekday and hour are spread evenly over this hour. Every line is one unit.
+    Orders of the same weekday and hour are spread evenly over this hour. Each line has one unit.
     """
     whole = ("order_id", "order_dow", "order_hour_of_day")
     hours: dict[tuple[int, int], list[str]] = defaultdict(list)
@@ -68,7 +68,7 @@ def instacart(paths: Sequence[Path], orders: Orders) -> None:
 
 
 def online_retail(paths: Sequence[Path], orders: Orders) -> None:
-    """Read invoices; cancelled ones, returns, and lines that are not products are omitted."""
+    """Read invoices; cancelled invoices, returns, and lines not for products are omitted."""
     columns = ("InvoiceNo|Invoice", "StockCode", "Quantity", "InvoiceDate")
     for path in paths:
         # descriptions are in an encoding of their own; what is read is plain
@@ -107,8 +107,8 @@ def jd(paths: Sequence[Path], orders: Orders) -> None:
 def olist(paths: Sequence[Path], orders: Orders) -> None:
     """Read orders and their items; cancelled and unavailable orders are omitted.
 
-    Every item is one unit. An order is due at the earliest `shipping_limit_date` of its items;
-    dates before the order time are ignored.
+    Every item is one unit. An order is due at the earliest `shipping_limit_date` of its items; such
+    dates are ignored if they are before the order's time of purchase.
     """
     columns = ("order_id", "order_status", "order_purchase_timestamp")
     for row in rows(paths[0], columns):

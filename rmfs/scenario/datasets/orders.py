@@ -25,7 +25,7 @@ class Order:
     due
         Due time, if the data set has one.
     units
-        Units by SKU, one entry per line, in the sequence of the lines.
+        Number of units by SKU, in the sequence of the order lines.
     """
 
     time: datetime | float
@@ -33,7 +33,7 @@ class Order:
     units: dict[str, int] = field(default_factory=dict)
 
     def add(self, sku: str, units: int) -> None:
-        """Add units; rows with the same SKU form one line."""
+        """Add units of a SKU; units of the same SKU form one line."""
         self.units[sku] = self.units.get(sku, 0) + units
 
 
@@ -44,9 +44,9 @@ class Orders:
     Attributes
     ----------
     takes
-        Function that returns whether to use an order with a given time; called once per order.
+        Function that returns whether to use an order, given its time; called once per order.
     by_name
-        Orders by name; None for those not used.
+        Orders by name; None for an order that is not used.
     left_out
         Number of omitted orders or lines, by reason (a text).
     """
@@ -58,7 +58,7 @@ class Orders:
     def begin(self, name: str, time: datetime | float) -> Order | None:
         """Return the order with this name, or None if it is not used.
 
-        The first call for a name decides whether to use the order and, if so, creates it.
+        The first call with a name decides whether the order is used, and creates it if so.
         """
         if name not in self.by_name:
             taken = self.takes(time)
@@ -67,9 +67,10 @@ class Orders:
         return self.by_name[name]
 
     def taken(self) -> list[tuple[str, Order]]:
-        """Return (name, order) of all orders used, sorted by time, then as in the file.
+        """Return pairs (name, order) of all orders used, sorted by time.
 
-        Orders without a line are omitted, and counted in `left_out`.
+        Orders with the same time are in the sequence of the file. Orders without a line are
+        omitted, and counted in `left_out`.
         """
         found = [(name, one) for name, one in self.by_name.items() if one is not None]
         self.left_out[NO_LINE] += sum(not one.units for _, one in found)

@@ -39,12 +39,12 @@ class Row:
         return self._fields[column]
 
     def name(self, column: str) -> str:
-        """Return a field that is a name.
+        """Return a field that contains a name.
 
         Raises
         ------
         InputError
-            If it is empty or too long.
+            If the field is empty or too long.
         """
         text = self._fields[column]
         if not 0 < len(text) <= LONGEST_NAME:
@@ -52,12 +52,12 @@ class Row:
         return text
 
     def whole(self, column: str, least: int, most: int = MOST_UNITS) -> int:
-        """Return a field that is a whole number from `least` to `most`.
+        """Return a field that contains a whole number from `least` to `most`.
 
         Raises
         ------
         InputError
-            If it is not a whole number, or out of bounds.
+            If the field is not a whole number, or the number is out of bounds.
         """
         text = self._fields[column]
         digits = text.removeprefix("-")
@@ -67,17 +67,17 @@ class Row:
         return number
 
     def moment(self, column: str, *further: str) -> datetime:
-        """Return a field that is a time without time zone, in ISO 8601 or a format in `further`.
+        """Return a field that contains a time without time zone.
 
         Parameters
         ----------
         further
-            Formats as for `strptime`.
+            Formats (as for `strptime`) that are accepted in addition to ISO 8601.
 
         Raises
         ------
         InputError
-            If it is not such a time.
+            If the field is not such a time.
         """
         text = self._fields[column]
         moment = parsed(text)
@@ -92,7 +92,7 @@ class Row:
         return moment
 
     def wrong(self, column: str, why: str) -> InputError:
-        """Return an error about a field."""
+        """Return an error that states what is wrong with a field."""
         given = self._fields[column]
         return InputError(f"{self.path}: line {self.line}: {column} {why} (given: {given!r:.40})")
 
@@ -103,13 +103,13 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
     Parameters
     ----------
     columns
-        Required columns; `a|b` is a column named a or b, whose fields are named a in every row.
+        Required columns. `a|b` means a column named a or b; each `Row` uses the name a for it.
 
     Raises
     ------
     InputError
-        If the file cannot be read, or a column or a row is wrong. The message names the file and,
-        for a column or a row, the line.
+        If the file cannot be read, a required column is missing or occurs twice, or a row is
+        invalid. The message names the file and, for a column or a row, the line.
     """
     reader = None
     try:

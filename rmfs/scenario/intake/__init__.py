@@ -1,7 +1,7 @@
 """Arrivals of orders and bundles: the interface between a scenario and a simulation.
 
-A simulation asks an intake for arrivals at the current time, and again at `next_us` and after every
-change of backlog or stock. How the scenario generates orders and bundles is internal.
+A simulation gets the arrivals from an intake at time zero, at `next_us`, and after every change of
+backlog or stock. It does not depend on how the scenario generates orders and bundles.
 """
 
 from rmfs.scenario.intake.bundles import bundle_intake as bundle_intake

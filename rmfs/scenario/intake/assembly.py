@@ -26,14 +26,14 @@ T = TypeVar("T")
 
 
 class Assembly(ABC, Generic[T]):
-    """Creates an intake that consists of batches and of regular arrivals, that is, all others.
+    """Creates an intake of batches and of regular arrivals (all arrivals that are not in a batch).
 
     Parameters
     ----------
     scenario, skus, site, seed
         As for `order_intake`.
     down
-        Down periods.
+        Down periods of the orders or bundles; None if there are none.
     """
 
     def __init__(
@@ -67,13 +67,13 @@ class Assembly(ABC, Generic[T]):
     def _arrivals(
         self, profile: AnyRate, per_h: float, scale: float, stream: Stream
     ) -> Iterator[Candidate]:
-        """Return the times of a Poisson process up to the end of the run."""
+        """Return the possible arrivals of a Poisson process up to the end of the run."""
         rate = rate_of(profile, per_h, scale, self._gone_s, self._seed)
         until_us = first_us(self._scenario.warmup_s + self._scenario.duration_s)
         return Poisson(rate, Substreams(self._seed, stream), self._openings, until_us)
 
     def _at_times(self, times_us: Iterable[int]) -> Iterator[Candidate]:
-        """Return candidates at the times of a file, postponed to the end of down periods."""
+        """Return candidates at given times; those in a down period are postponed to its end."""
         return map(_candidate, enumerate(map(self._openings.open_from_us, times_us)))
 
 

@@ -17,12 +17,15 @@ if TYPE_CHECKING:
 
 
 class Rest:
-    """Blocks a process of an intake for a while after a failed draw, and in down periods.
+    """Blocks a process of an intake in down periods, and for a while after a failed draw.
+
+    A draw fails if stock cannot serve the order drawn, or the bundle drawn would exceed the load
+    limit.
 
     Attributes
     ----------
     until_us
-        Time at which the process may continue, if it is blocked; otherwise `NEVER_US`.
+        Time at which the process may continue; `NEVER_US` if it is not blocked.
     """
 
     def __init__(self, openings: Openings) -> None:
@@ -58,7 +61,7 @@ class BacklogOrders:
     contents
         Draws the contents of orders.
     capacity
-        Space units of all pods together.
+        Total capacity of all pods, in space units.
     openings
         Tells whether a time is outside the down periods, in which nothing is generated.
     """
@@ -73,14 +76,14 @@ class BacklogOrders:
 
     @property
     def next_us(self) -> int:
-        """End of the current pause (after a failed draw, or in a down period), or `NEVER_US`."""
+        """End of the current pause or down period in us; `NEVER_US` if there is none."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> OrderArrival | None:
         """Return an order, or None.
 
-        The result is None if the backlog is full or paused, or if stock cannot serve the order
-        drawn.
+        The result is None if the backlog is full, during a pause or down period, and if stock
+        cannot serve the order drawn.
         """
         # called in any case, since it has to observe every change of stock
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
@@ -105,7 +108,7 @@ class BacklogBundles:
     source
         Draws bundles.
     capacity
-        Space units of all pods together.
+        Total capacity of all pods, in space units.
     openings
         Tells whether a time is outside the down periods, in which nothing is generated.
     """
@@ -124,14 +127,14 @@ class BacklogBundles:
 
     @property
     def next_us(self) -> int:
-        """End of the current pause (after a failed draw, or in a down period), or `NEVER_US`."""
+        """End of the current pause or down period in us; `NEVER_US` if there is none."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
         """Return a bundle, or None.
 
-        The result is None if the backlog is full or paused, or if the bundle drawn would exceed
-        the load limit.
+        The result is None if the backlog is full, during a pause or down period, and if the bundle
+        drawn would exceed the load limit.
         """
         load = state.load
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)

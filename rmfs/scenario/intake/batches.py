@@ -23,8 +23,8 @@ class Batch(NamedTuple):
     time_s
         Time within the cycle, in s.
     lacks
-        Function of the state and of the number of arrivals in the batch so far. It returns whether
-        the batch needs more.
+        Function that returns whether the batch needs a further arrival. Its arguments are the state
+        and the number of arrivals in the batch so far.
     """
 
     time_s: float
@@ -32,7 +32,7 @@ class Batch(NamedTuple):
 
 
 def add(time_s: float, number: int) -> Batch:
-    """Return a batch whose number of arrivals does not depend on the state."""
+    """Return a batch of `number` arrivals, whatever the state."""
     return Batch(time_s, partial(_fewer_than, number))
 
 
@@ -50,9 +50,9 @@ class Batches(Generic[T]):
     cycle_s, gone_s
         Length of the cycle, and time by which it has advanced at time zero, in s.
     make
-        Function that creates the k-th order or bundle, counted over all batches. Its arguments are
-        k, the time (us) and the state. If it returns None, because nothing can be created, the
-        batch ends.
+        Function that creates an order or bundle. Its arguments are the number of the order or
+        bundle (counted over all batches, from 0), the time in us and the state. If it returns None,
+        because nothing can be created, the batch ends.
     """
 
     def __init__(

@@ -37,8 +37,8 @@ _UNLIMITED = 2**62
 def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...]) -> Contents:
     """Return the function that draws the contents of the k-th order.
 
-    The contents depend on stock if the demand is a constant backlog, unless the orders are words
-    (`WordOrders`). In all other cases they are the same whatever happens in a run.
+    With a constant backlog, the contents depend on the stock, unless the orders are words
+    (`WordOrders`). In all other cases, the contents do not depend on what happens in a run.
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ def contents(scenario: Scenario, skus: SkuSet, seed: int, path: tuple[int, ...])
     Raises
     ------
     InputError
-        If an order may have more lines than there are SKUs; with demand other than a constant
-        backlog, only SKUs with a popularity above zero count.
+        If a file of words is invalid, or an order may have more lines than there are SKUs. Unless
+        the demand is a constant backlog, only SKUs with a popularity above zero are counted.
     """
     if isinstance(scenario.orders, WordOrders):
         assert isinstance(scenario.skus, LetterSkus)

@@ -31,7 +31,8 @@ class ExportedStream(NamedTuple):
     path
         The file.
     digest
-        SHA-256 of the stream, whatever the format of the file (`rmfs.scenario.streams.digest`).
+        SHA-256 of the stream (`rmfs.scenario.streams.digest`); it does not depend on the file's
+        format.
     number
         Number of orders, or bundles.
     """
@@ -73,10 +74,14 @@ def export_stream(
     Raises
     ------
     InputError
-        If arrivals depend on what happens in a run (with a constant backlog, replenishment of what
-        orders lack, rates tied to active stations, or batches up to a given backlog or load): such
-        a stream can only be recorded during a run. Also if a file of the scenario is invalid, or
-        `path` has another suffix or cannot be written.
+        If a file of the scenario is invalid, `path` has another suffix or cannot be written, or
+        arrivals depend on what happens in a run.
+
+    Notes
+    -----
+    Arrivals depend on what happens in a run if the scenario has a constant backlog, replenishment
+    of SKUs that run short (mode "needed"), rates tied to active stations, or batches up to a given
+    backlog or load. Such a stream can only be recorded during a run.
     """
     skus = sku_set(scenario.skus)
     recorder = StreamRecorder()
@@ -100,7 +105,7 @@ def export_stream(
 def order_stream_of(scenario: Scenario, skus: SkuSet, seed: int) -> OrderStream:
     """Return all orders of a scenario; they must not depend on what happens in a run.
 
-    If rates or batches are given per pick station, the orders are those for a single pick station.
+    If rates or batches are given per pick station, the orders are those of one pick station.
     """
     recorder = StreamRecorder()
     end_us = first_us(scenario.warmup_s + scenario.duration_s)

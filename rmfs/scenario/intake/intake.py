@@ -58,7 +58,8 @@ class OrderArrival(NamedTuple):
 class BundleArrival(NamedTuple):
     """A bundle that arrives: units of one SKU, and the space units they take.
 
-    `in_file` is the position of the bundle in the file from which it comes; -1: from no file.
+    `in_file` is the position of the bundle in the file from which it comes; -1 if it comes from no
+    file.
     """
 
     time_us: int
@@ -85,7 +86,10 @@ class Process(Protocol[T_co]):
 
     @property
     def next_us(self) -> int:
-        """Time by which `draw` must be called again; `NEVER_US`: only after a change of state."""
+        """Time by which `draw` must be called again.
+
+        `NEVER_US` means that it need not be called until the state changes.
+        """
 
     def draw(self, now_us: int, state: State) -> T_co | None:
         """Return the next arrival whose time has come, or None if there is none."""
@@ -97,9 +101,10 @@ class Intake(Generic[T]):
     Parameters
     ----------
     processes
-        The processes; simultaneous arrivals come in the order of their processes.
+        The processes that generate the arrivals. Simultaneous arrivals are yielded in the sequence
+        of their processes.
     record
-        Called with each arrival.
+        Function that is called with each arrival.
     stream
         The orders or bundles of a file, if arrivals come from one.
     finish
@@ -120,7 +125,7 @@ class Intake(Generic[T]):
 
     @property
     def next_us(self) -> int:
-        """Time by which `due` must be called again; valid once `due` has yielded everything."""
+        """Time by which `due` must be called again; valid after `due` has yielded all arrivals."""
         if len(self._processes) == 1:  # the usual case, and this is asked after every change
             return self._processes[0].next_us
         return min(process.next_us for process in self._processes)
@@ -140,9 +145,8 @@ class Intake(Generic[T]):
     def due(self, now_us: int, state: State) -> Iterator[T]:
         """Yield the arrivals whose time has come.
 
-        The caller adds each arrival to the state before requesting the next.
-
-        To be called at time zero, at `next_us`, and after every change of backlog or stock.
+        This method must be called at time zero, at `next_us`, and after every change of backlog or
+        stock. The caller must add each arrival to the state before it requests the next one.
 
         Parameters
         ----------

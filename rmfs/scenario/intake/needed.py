@@ -1,4 +1,4 @@
-"""Replenishment of the SKUs of which too few units are left for further orders."""
+"""Replenishment of SKUs that run short: too few of their units are left for further orders."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 class NeededBundles:
     """Generates bundles of SKUs that run short (a process of an intake).
 
-    What is left of a SKU for further orders: its stored units, plus those in bundles that wait or
-    are on their way, minus those that orders still need. The SKU is short if fewer units are left
-    than the reorder point, `reorder_below_units`. With a reorder point of 0, it is short only if
-    orders need more units than are stored, waiting or on their way. The SKU with the fewest units
-    left comes first; ties go to the lowest index.
+    The units left of a SKU are its stored units, plus those in bundles that have arrived and are
+    not stored yet, minus those that orders still need. A SKU is short if fewer units are left
+    than the reorder point, `reorder_below_units`. With a reorder point of 0, a SKU is therefore
+    short only if orders need more units than are stored or have arrived in bundles. The SKU with
+    the fewest units left comes first; ties go to the lowest index.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class NeededBundles:
     skus
         The SKUs, with their bundle sizes.
     capacity
-        Space units of all pods together.
+        Total capacity of all pods, in space units.
     openings
         Tells whether a time is outside the down periods, in which nothing is generated.
     """
@@ -49,14 +49,15 @@ class NeededBundles:
 
     @property
     def next_us(self) -> int:
-        """End of the current pause (at the load limit, or in a down period), or `NEVER_US`."""
+        """End of the current pause or down period in us; `NEVER_US` if there is none."""
         return self._rest.until_us
 
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
         """Return a bundle of the SKU with the fewest units left; None if this SKU is not short.
 
-        The result is also None in a down period, while the maximum number of bundles is waiting, if
-        the bundle would exceed the load limit, and during the pause after that.
+        The result is also None in a down period, while the maximum number of bundles is waiting,
+        and if the bundle would exceed the load limit. The last case starts a pause, in which the
+        result is None as well.
         """
         if not self._rest.ends(now_us) or state.waiting_bundles >= self._config.bundles:
             return None

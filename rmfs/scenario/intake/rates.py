@@ -47,18 +47,18 @@ def rate_of(config: AnyRate, per_h: float, scale: float, gone_s: float, seed: in
     config
         The table `profile` of a scenario's demand or replenishment.
     per_h
-        Mean rate; with a high-low profile, the low rate.
+        Mean rate, in arrivals per h; with a high-low profile, the rate in low periods.
     scale
         Factor on all rates: the number of stations if rates are per station, else 1.
     gone_s
-        Time by which all cycles have advanced at time zero.
+        Time by which all cycles have advanced at time zero, in s.
     seed
         The run's seed.
 
     Raises
     ------
     InputError
-        If the rate ever exceeds `MOST_PER_H`.
+        If the maximum rate exceeds `MOST_PER_H`.
     """
     rate: Rate
     if isinstance(config, HighLowRate):
@@ -78,7 +78,7 @@ class _Fixed:
     """A rate without random elements."""
 
     def redraw(self, now_us: int) -> None:
-        """There is nothing to forget."""
+        """Do nothing, as the rate has no random changes."""
 
 
 class _Constant(_Fixed):
@@ -92,7 +92,7 @@ class _Constant(_Fixed):
 class _InSteps(_Fixed):
     """A step function with a given mean over a cycle.
 
-    Weights count in proportion to the lengths of their steps.
+    The mean is weighted by the lengths of the steps.
     """
 
     def __init__(self, config: Steps, mean_per_h: float, gone_s: float) -> None:
@@ -144,7 +144,12 @@ class _HighLow:
 def exponential_us(uniform: float, per_h: float) -> int:
     """Convert a number in [0, 1) to the time in us until the next event of a Poisson process.
 
-    Rounding to whole microseconds hides the last bits of the logarithm, in which processors may
-    differ.
+    Processors may differ in the last bits of the logarithm; rounding to whole microseconds removes
+    these bits.
+
+    Parameters
+    ----------
+    per_h
+        Rate of the process, in events per h.
     """
     return round(-math.log1p(-uniform) / per_h * US_PER_H)

@@ -12,16 +12,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Site:
-    """Those properties of a warehouse that a scenario needs.
+    """The properties of a warehouse on which arrivals depend.
 
     Attributes
     ----------
     pick_stations, replenishment_stations
-        How many stations there are, active or not.
+        Numbers of stations, active or not.
     capacity
-        Space units of all pods together.
+        Total capacity of all pods, in space units.
     largest_pod
-        Space units of the largest pod.
+        Capacity of the largest pod, in space units.
     """
 
     pick_stations: int
@@ -43,7 +43,7 @@ class State(Protocol):
 
     @property
     def stored_space(self) -> float:
-        """Space units stored on all pods."""
+        """Space units taken by the stored units of all pods."""
 
     @property
     def load(self) -> float:
@@ -59,8 +59,8 @@ class State(Protocol):
 
     @property
     def active_pick_share(self) -> float:
-        """Active pick stations as a share of all; if none is active, one is counted."""
+        """Share of the pick stations that are active; at least one station counts as active."""
 
     @property
     def active_replenishment_share(self) -> float:
-        """Active replenishment stations as a share of all; if none is active, one is counted."""
+        """Share of active replenishment stations; at least one station counts as active."""

@@ -1,4 +1,4 @@
-"""Arrivals at times that do not depend on the state of a run: drawn, or read from a file."""
+"""Arrivals at times that are drawn or read from a file, independently of the state of a run."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class Timed(Generic[T]):
     Parameters
     ----------
     candidates
-        The possible arrivals, in order of time; `share` decides which are accepted.
+        The possible arrivals, sorted by time; `share` determines which are accepted.
     make
-        Creates the arrival for an accepted candidate.
+        Function that creates the arrival for an accepted candidate.
     share
         Function that returns the share of active stations. A candidate is accepted if this share
-        exceeds its `needed_share`. None: the rate is not tied to stations, and all candidates are
-        accepted.
+        exceeds its `needed_share`. If `share` is None, the rate is not tied to stations, and all
+        candidates are accepted.
     """
 
     def __init__(
@@ -87,7 +87,10 @@ def _at_zero(ordinal: int) -> Candidate:
 
 
 def share_of(tied_to: TiedTo) -> Callable[[State], float] | None:
-    """Return a function that reads the share of active stations; None if `tied_to` is `nothing`."""
+    """Return a function from a state to the share of active stations.
+
+    The result is None if `tied_to` is "nothing".
+    """
     if tied_to == "pick-stations":
         return attrgetter("active_pick_share")
     if tied_to == "replenishment-stations":

@@ -1,7 +1,7 @@
 """The contents of a scenario file.
 
-Names and default values follow the settings of RAWSim-O (its file format .xsett), in plain words
-and with the unit as suffix. Parameters are explained only by their `Field` descriptions, which
+Names and default values follow RAWSim-O's settings files (.xsett), but the names are in plain words
+and have the unit as suffix. Parameters are explained only by their `Field` descriptions, which
 `rmfs scenario show` writes as comments.
 """
 

@@ -1,4 +1,4 @@
-"""What happens at given times of a cycle, usually a day: down periods and batches."""
+"""Down periods and batches, which occur at given times of a cycle, usually a day."""
 
 from __future__ import annotations
 

@@ -25,8 +25,8 @@ class _Demand(Block):
 class BacklogDemand(_Demand):
     """Keeps a constant number of orders waiting, except during pauses and down periods.
 
-    Orders ask only for units that are in stock and not needed by earlier orders. Words
-    (`WordOrders`) are drawn whatever is in stock.
+    Orders contain only units that are in stock and not needed by earlier orders. This does not
+    apply to orders that are words (`WordOrders`), which are drawn whatever is in stock.
     """
 
     mode: Literal["backlog"] = Field("backlog", description="a constant number of orders waits")

@@ -1,4 +1,4 @@
-"""What goes wrong while a warehouse runs; nothing by default."""
+"""Disturbances of a run, such as breakdowns of robots; none by default."""
 
 from __future__ import annotations
 

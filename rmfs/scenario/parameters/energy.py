@@ -1,4 +1,4 @@
-"""Energy use of robots; not modelled unless a scenario asks for it."""
+"""Energy use of robots; modelled only if a scenario has a table `energy`."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Battery(Block):
 
 
 class Inductive(Block):
-    """Waypoints that charge robots while they queue or are served."""
+    """Inductive charging at waypoints of queues, while robots wait or are served."""
 
     power_w: Positive = Field(200.0, description="power in W for a robot at such a waypoint")
     at: Literal["pick-stations", "replenishment-stations", "all-stations"] = Field(
@@ -135,7 +135,7 @@ class Energy(Block):
     @pydantic.model_validator(mode="before")
     @classmethod
     def _of_preset(cls, given: Any) -> Any:
-        """Take values that are not given from the preset."""
+        """Add the values of the preset for keys that are not given."""
         if not isinstance(given, dict):
             return given
         name = given.get("preset", "standard")

@@ -1,4 +1,4 @@
-"""Files that a scenario names."""
+"""Types of the files to which a scenario refers."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import pydantic
 
 
 def existing(*suffixes: str) -> pydantic.AfterValidator:
-    """Return a validator: the file must exist and have one of the suffixes.
+    """Return a validator that requires a file to exist and to have one of the suffixes.
 
     Parameters
     ----------
     suffixes
-        Allowed suffixes, such as `.csv`; without arguments, any suffix is allowed.
+        Allowed suffixes, such as `.csv`; if none are given, any suffix is allowed.
     """
 
     def check(path: Path) -> Path:

@@ -36,12 +36,12 @@ class Orders(Block):
     @pydantic.field_validator("lines", "units_per_line", mode="before")
     @classmethod
     def _default_kind(cls, value: Any) -> Any:
-        """Assume a normal distribution where a table does not name one."""
+        """Assume a normal distribution if a table does not specify one."""
         return {"distribution": "normal", **value} if isinstance(value, dict) else value
 
 
 class WordOrders(Block):
-    """Orders that are words in coloured letters: one line for each distinct coloured letter."""
+    """Orders that are words of coloured letters; equal letters of one colour form one line."""
 
     content: Literal["words"] = Field(
         "words", description="each order is a word in coloured letters"
@@ -60,7 +60,7 @@ AnyOrders = Annotated[Orders | WordOrders, Field(discriminator="content")]
 
 
 def not_above_skus(lines: int, skus: int) -> None:
-    """Check that an order with this many lines can have a different SKU on each.
+    """Check that an order with `lines` lines can have a different SKU in each line.
 
     Raises
     ------

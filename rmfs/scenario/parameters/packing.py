@@ -1,4 +1,4 @@
-"""Packing of orders after the pick stations; not modelled unless a scenario asks for it."""
+"""Packing of orders after the pick stations; modelled only if a scenario has a table `packing`."""
 
 from __future__ import annotations
 

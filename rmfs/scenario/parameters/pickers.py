@@ -1,4 +1,7 @@
-"""Pickers at the pick stations; without them, every unit takes the time given in the layout."""
+"""Pickers at the pick stations.
+
+If a scenario has no table `pickers`, every unit takes the time given in the layout.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,7 @@ class ConstantTime(Block):
 
 
 class GammaTime(Block):
-    """Gamma distribution; its mean is the time of a unit that the layout gives for the station."""
+    """Gamma distribution; its mean is the time that the layout gives for the station."""
 
     distribution: Literal["gamma"] = "gamma"
     variation: Variation = Field(
@@ -49,7 +52,7 @@ class LognormalTime(Block):
 
 
 class MeasuredTime(Block):
-    """The time of a unit is drawn from measured times, all equally likely."""
+    """The time of each unit is drawn from measured times, which are equally likely."""
 
     distribution: Literal["empirical"] = "empirical"
     file: TimesFile = Field(
@@ -68,7 +71,8 @@ UnitTime = Annotated[
 class Learning(Block):
     """Pickers get faster with each unit, by the learning curve of De Jong.
 
-    The share `incompressible` of the time never gets shorter; if it is 0, the curve is Wright's.
+    Learning does not reduce the share `incompressible` of the first unit's time. If this share is
+    0, the curve is Wright's.
     """
 
     rate: Annotated[float, Field(ge=0.5, le=1)] = Field(
@@ -129,7 +133,7 @@ class Layers(Block):
 
 
 class Faces(Block):
-    """Pods have faces; the picker sees one at a time, and showing another takes time."""
+    """Pods have faces: the picker sees one face at a time, and changing faces takes time."""
 
     count: Annotated[int, Field(ge=1, le=8)] = Field(
         4, description="faces of a pod, each with an equal part of its capacity; at most 8"
@@ -169,7 +173,7 @@ class Errors(Block):
 class Roster(Block):
     """Shifts and breaks in a cycle, usually a day.
 
-    Each shift has its own pickers, the same ones in every cycle.
+    Each shift has its own pickers, who are the same in every cycle.
     """
 
     cycle_s: Cycle = DAY_S

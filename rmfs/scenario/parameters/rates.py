@@ -32,7 +32,7 @@ class ConstantRate(Block):
 class Steps(Block):
     """A rate that changes in steps, which are repeated in every cycle.
 
-    Its mean over a cycle is `orders_per_h` or `bundles_per_h`.
+    The mean rate over a cycle is `orders_per_h` or `bundles_per_h`.
     """
 
     kind: Literal["steps"] = "steps"
@@ -78,7 +78,7 @@ class BundleSteps(Steps):
 
 
 class HighLowRate(Block):
-    """A rate that switches between a low and a high value, starting with the low one.
+    """A rate that switches between a low and a high value, starting with the low value.
 
     The lengths of low and high periods are exponentially distributed. If orders and bundles have
     the same values of `low_to_high_per_h` and `high_to_low_per_h`, their high periods coincide.

@@ -72,8 +72,8 @@ class PoissonReplenishment(_Drawn):
 class NeededReplenishment(_Replenishment):
     """Bundles arrive for SKUs of which too few units are left for further orders.
 
-    What is left of a SKU: its stored units, plus those in bundles that wait or are on their way,
-    minus those that orders still need.
+    The units left of a SKU are its stored units, plus those in bundles that have arrived and are
+    not stored yet, minus those that orders still need.
     """
 
     mode: Literal["needed"] = Field("needed", description="bundles of SKUs that run short")

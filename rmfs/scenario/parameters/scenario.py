@@ -70,7 +70,7 @@ class Scenario(Block):
     @pydantic.field_validator("start", mode="before")
     @classmethod
     def _moment(cls, value: Any) -> Any:
-        """Accept TOML dates and times as well; keep the text of the moment."""
+        """Return the date and time as text; TOML dates and times are accepted as well."""
         if isinstance(value, str):
             try:
                 value = datetime.fromisoformat(value)
@@ -82,7 +82,7 @@ class Scenario(Block):
 
     @pydantic.model_validator(mode="after")
     def _clock(self) -> Self:
-        """Set the clock to the time of day of the start."""
+        """Set `time_of_day_s` to the time of day of `start`."""
         if self.start is None:
             return self
         moment = datetime.fromisoformat(self.start)
@@ -96,7 +96,7 @@ class Scenario(Block):
     @pydantic.field_validator("orders", "demand", "replenishment", mode="before")
     @classmethod
     def _default_kind(cls, value: Any, info: pydantic.ValidationInfo) -> Any:
-        """Assume the default kind where a table does not name its kind."""
+        """Assume the default kind if a table does not specify its kind."""
         key, kind = ("content", "skus") if info.field_name == "orders" else ("mode", "backlog")
         return {key: kind, **value} if isinstance(value, dict) else value
 

@@ -12,7 +12,7 @@ from rmfs.scenario.quantities import Block, Positive
 class Shortage(Block):
     """What happens to an order that stock cannot serve.
 
-    Orders that are split, assigned to a station or in a station's pool are not changed.
+    Orders that are split, assigned to a station or in a station's pool are not cut or cancelled.
     """
 
     policy: Literal["wait", "partial", "cancel"] = Field(

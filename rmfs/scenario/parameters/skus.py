@@ -26,7 +26,7 @@ class _Sizes(Block):
 
 
 class GeneratedAffinity(Block):
-    """Weights of pairs of SKUs: they determine which SKUs tend to be ordered together.
+    """Random weights of pairs of SKUs, which determine which SKUs tend to be ordered together.
 
     Each SKU is a random point in the unit square. `pairs` pairs are drawn at random; the weight of
     a drawn pair is sqrt(2) minus the distance between its points. All other pairs have the weight
@@ -87,8 +87,8 @@ class SkuFile(_Sizes):
 class LetterSkus(_Sizes):
     """Letters in several colours as SKUs, as in the simulator Alphabet Soup.
 
-    The letters are those of a list of words, and a SKU is a letter in one colour. How often it is
-    ordered depends on the words and on the weights of the colours.
+    The letters are those of a list of words, and a SKU is a letter in one colour. How often a SKU
+    is ordered depends on the words and on the weights of the colours.
     """
 
     words: WordFile = Field(
@@ -112,7 +112,7 @@ _SOURCES = {"file": SkuFile, "words": LetterSkus}
 
 
 def _source(value: Any) -> str:
-    """Return which of the tables of SKUs is meant."""
+    """Return the name of the class that a table of SKUs describes."""
     if isinstance(value, GeneratedSkus | SkuFile | LetterSkus):
         return type(value).__name__
     given = value if isinstance(value, dict) else {}

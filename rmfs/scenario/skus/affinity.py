@@ -27,10 +27,10 @@ class Affinity:
     Attributes
     ----------
     first, second
-        The pairs with a weight of their own, as SKU indices, shape (n,) each. `first` is the SKU of
-        the line before, `second` that of the line itself; the opposite direction is another pair.
-        If an .xgenc file (RAWSim-O) gives only one direction, the opposite one is added with the
-        same weight.
+        SKU indices of the n pairs that have their own weights, shape (n,) each. `first` is the SKU
+        of the line before, and `second` is the SKU of the line itself, so (a, b) and (b, a) are
+        different pairs. If an .xgenc file (RAWSim-O) contains only one of these two pairs, the
+        other is added with the same weight.
     weight
         Weight of each of these pairs, shape (n,).
     default_weight
@@ -52,9 +52,9 @@ class Affinity:
     def samplers(self, skus: int) -> Callable[[int], Categorical | None]:
         """Return a function that returns, for the SKU of a line, a sampler of the next line's SKU.
 
-        The function returns None for a SKU if all pairs that begin with it have a weight of 0. A
-        sampler takes memory in proportion to `skus`, the number of SKUs, so only recent samplers
-        are cached.
+        The function returns None for a SKU if all pairs with this SKU as `first` have the weight 0.
+        The memory of a sampler is in proportion to `skus`, the number of SKUs, so only recent
+        samplers are cached.
         """
         order = np.argsort(self.first, kind="stable")
         starts = np.searchsorted(self.first[order], np.arange(skus + 1))

@@ -19,17 +19,17 @@ class SkuFileContent:
     Attributes
     ----------
     ids
-        Number of each SKU, shape (K,).
+        Id number of each SKU, shape (K,).
     popularity
         Relative weight with which each SKU is ordered, shape (K,).
     space_per_unit
-        Space units of one unit of each SKU, shape (K,); None if missing in the file.
+        Space units that one unit of each SKU takes, shape (K,); None if missing in the file.
     bundle_units
         Units per bundle of each SKU, shape (K,); None if missing in the file.
     affinity
         Weights of pairs of SKUs; None if the file specifies no affinity.
     names
-        Names of the SKUs; empty if they have none.
+        Names of the SKUs; empty if the SKUs have no names.
     """
 
     ids: NDArray[np.int64]

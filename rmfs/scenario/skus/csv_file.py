@@ -74,7 +74,7 @@ def read_sku_table(path: Path) -> SkuFileContent:
 
 
 def _ordered(skus: list[str], lines: list[int]) -> tuple[dict[str, list[str]], list[int]]:
-    """Return the columns of the SKUs of order lines, and where each of them comes first."""
+    """Return the columns of the SKUs in order lines, and the line where each SKU first occurs."""
     first: dict[str, int] = {}
     for sku, line in zip(skus, lines, strict=True):
         first.setdefault(sku, line)
@@ -101,7 +101,7 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
 def _named(
     texts: list[str], lines: list[int], path: Path
 ) -> tuple[np.ndarray[tuple[int], np.dtype[np.int64]], tuple[str, ...]]:
-    """Return ids, and names if the SKUs are more than numbers."""
+    """Return the ids of SKUs, and their names; no names if all texts are whole numbers."""
     seen: set[str] = set()
     for line, text in zip(lines, texts, strict=True):
         if not text or len(text) > LONGEST_NAME:
@@ -125,7 +125,7 @@ def _numbers(
     least: float,
     whole: bool = False,
 ) -> np.ndarray[tuple[int], np.dtype[np.float64]] | None:
-    """Return a column of numbers; nothing if the file has none of that name."""
+    """Return a column of numbers; None if the file has no column of that name."""
     if column not in found:
         return None
     made = []

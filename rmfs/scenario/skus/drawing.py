@@ -55,7 +55,7 @@ def draw_bundle_units(distribution: Counts, seed: int, count: int) -> NDArray[np
 
 
 def draw_affinity(config: GeneratedAffinity, seed: int, count: int) -> Affinity:
-    """Draw pairs of SKUs, with weights that count in both directions.
+    """Draw pairs of SKUs; the weight of a pair applies in both directions.
 
     Each SKU is a random point in the unit square, and the weight of a pair is sqrt(2) minus the
     distance between its points. Because two points near a third one are near each other, two SKUs

@@ -57,7 +57,7 @@ class _SkuSetFile(Block):
 
 
 def write_sku_set(skus: SkuSet, path: Path, description: str = "") -> None:
-    """Write a SKU set, so that reading it back gives the same set.
+    """Write a SKU set to a file from which `read_sku_set` returns the same set.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def read_sku_set(path: Path) -> SkuSet:
     Raises
     ------
     InputError
-        If the file cannot be read or does not describe SKUs, or its digest does not match its
+        If the file cannot be read, is not a valid SKU set, or has a digest that does not match its
         contents.
     """
     source = str(path)

@@ -1,7 +1,7 @@
 """Coloured letters as SKUs, as in the simulator Alphabet Soup.
 
-Orders are words, and each letter of a word is a coloured tile that has to be picked. In RAWSim-O,
-this is the letter mode (item type Letter).
+Orders are words, and each letter of a word is a coloured tile that has to be picked. RAWSim-O calls
+this the letter mode (item type Letter).
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ _LONGEST_LINE = 8 * LONGEST_WORD
 class Alphabet:
     """Words and the colours of their letters; a SKU is a letter in one colour.
 
-    SKUs are numbered by letter in alphabetical order and, within a letter, by colour in the order
-    given.
+    SKUs are numbered by letter in alphabetical order and, for each letter, by colour in the
+    sequence of `colours`.
 
     Attributes
     ----------
@@ -43,7 +43,7 @@ class Alphabet:
     letters
         All letters of the words, in alphabetical order.
     colours
-        Names of the colours, each with its weight.
+        Weight of each colour, by its name.
     """
 
     words: tuple[tuple[int, ...], ...]
@@ -83,7 +83,7 @@ def letter_sku_set(config: LetterSkus) -> SkuSet:
 
 
 def read_alphabet(config: LetterSkus) -> Alphabet:
-    """Read the file of words that a scenario names.
+    """Read the file of words to which a scenario refers.
 
     Raises
     ------
@@ -98,7 +98,7 @@ def read_alphabet(config: LetterSkus) -> Alphabet:
 
 
 def _read_words(path: Path) -> tuple[str, ...]:
-    """Read a text file with a word a line; case does not matter, empty lines are left out."""
+    """Read a text file with one word per line; case and empty lines are ignored."""
     problems = Problems(path)
     words = []
     try:

@@ -23,14 +23,14 @@ FORMATS = (".svg", ".png", ".pdf")
 
 
 def draw_popularity(skus: SkuSet, ax: Axes, *, cumulative: bool = False) -> None:
-    """Draw the share of demand of each SKU, the most popular first.
+    """Plot the share of demand of each SKU, the most popular SKU first.
 
     Parameters
     ----------
     ax
-        Axes to draw on.
+        Axes on which to plot.
     cumulative
-        Whether to draw cumulative shares, from the most popular SKU on. A thin line then shows the
+        Whether to plot cumulative shares, from the most popular SKU on. A thin line then shows the
         case of equal popularity.
     """
     shares = np.sort(skus.by_popularity.probabilities)[::-1]
@@ -50,7 +50,7 @@ def draw_popularity(skus: SkuSet, ax: Axes, *, cumulative: bool = False) -> None
 
 
 def save_picture(skus: SkuSet, path: Path) -> None:
-    """Draw the shares of demand and the cumulative shares side by side, in a file.
+    """Save plots of the shares of demand and of the cumulative shares, side by side in one file.
 
     Raises
     ------

@@ -25,19 +25,20 @@ class SkuSet:
     Attributes
     ----------
     ids
-        Number of each SKU in the file of SKUs, or its index if it has no such number, shape (K,).
+        Id number of each SKU in the file of SKUs, shape (K,); its index if it has no such number.
     popularity
         Relative weight with which each SKU is ordered and replenished, shape (K,), rounded to 30
         significant bits.
     space_per_unit
-        Space units of one unit, shape (K,), in steps of 2**-20 (`exact.space`).
+        Space units that one unit of each SKU takes, shape (K,); multiples of 2**-20 (see
+        `exact.space`).
     bundle_units
-        Units per bundle, shape (K,).
+        Units per bundle of each SKU, shape (K,).
     affinity
         Weights of pairs of SKUs, for drawing lines by affinity; None if every line is drawn by
         popularity.
     names
-        Names of the SKUs, not part of the digest; empty if they have none.
+        Names of the SKUs, which are not part of the digest; empty if the SKUs have no names.
     """
 
     ids: NDArray[np.int64]
@@ -60,7 +61,7 @@ class SkuSet:
 
     @cached_property
     def bundle_space(self) -> NDArray[np.float64]:
-        """Space units of one bundle of each SKU, shape (K,)."""
+        """Space units that one bundle of each SKU takes, shape (K,)."""
         return self.space_per_unit * self.bundle_units
 
     @cached_property
@@ -88,7 +89,7 @@ class SkuSet:
         Parameters
         ----------
         pod_capacity
-            Space units of the largest pod.
+            Capacity of the largest pod, in space units.
         source
             Name of the scenario, for the message.
 

@@ -15,17 +15,17 @@ MOST_ROWS = 5_000_000
 
 
 class Columns:
-    """The position of each column in a row.
+    """The positions of the columns in the rows of a file.
 
-    Columns whose names are not known to rmfs are the user's own; a column without a name, as pandas
-    writes for its index, is ignored.
+    Columns whose names are not known to rmfs are additional columns of the user. A column without a
+    name, such as the index that pandas writes, is ignored.
 
     Parameters
     ----------
     names
         Names of the columns in the file.
     rows
-        Receiver of the rows; it is told the names of the user's own columns.
+        Receiver of the rows; its method `begin` is called with the names of the additional columns.
 
     Raises
     ------
@@ -57,7 +57,7 @@ class Columns:
         rows.begin([names[at] for at in further])
 
     def arranged(self, fields: Sequence[str]) -> list[str]:
-        """Return the fields of a row as `Rows.take` expects them, empty for missing columns.
+        """Return the fields of a row as `Rows.take` expects them; missing columns are empty.
 
         Raises
         ------

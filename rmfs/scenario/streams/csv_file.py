@@ -18,7 +18,7 @@ LONGEST_LINE = 4096
 
 
 class _UnreadableError(ValueError):
-    """It makes no sense to read on."""
+    """The rest of the file cannot be read."""
 
 
 def read_csv(path: Path, rows: Rows, problems: Problems) -> None:

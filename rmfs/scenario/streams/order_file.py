@@ -1,4 +1,4 @@
-"""Order names and additional columns of a file, kept so that results can be joined to them."""
+"""Names and additional columns of orders in a file, kept so that results can be joined to it."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class OrderFile:
     Attributes
     ----------
     names
-        Name of each order, n texts.
+        Name of each of the n orders.
     line
         For each order line, the number of its line (CSV) or row (Parquet) in the file, shape (m,).
     columns
-        For each additional column, its m texts: an array of indices, shape (m,), and the tuple of
-        distinct texts to which the indices refer.
+        The m texts of each additional column, by column name. They are stored as a pair: an array
+        of indices, shape (m,), and the tuple of distinct texts to which the indices refer.
     """
 
     names: tuple[str, ...]
@@ -37,7 +37,7 @@ class OrderFile:
 
 
 class OrderFileBuilder:
-    """Builds an `OrderFile`; a repeated text in an additional column takes only 4 bytes.
+    """Builds an `OrderFile`; each repetition of a text in an additional column takes only 4 bytes.
 
     Parameters
     ----------

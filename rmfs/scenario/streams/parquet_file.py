@@ -57,7 +57,7 @@ def read_parquet(path: Path, rows: Rows, problems: Problems) -> None:
 
 
 def _text(field: Any) -> str:
-    """Return what a CSV file would say."""
+    """Return a field as it would appear in a CSV file."""
     return "" if field is None or field != field else str(field).strip()
 
 

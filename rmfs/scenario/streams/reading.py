@@ -27,10 +27,10 @@ def read_orders(
 ) -> OrderStream:
     """Read orders from a .csv or .parquet file.
 
-    The columns are `time` (s or ISO 8601, not decreasing), `order` (any name), `sku` (its name or
-    id), `quantity` (units) and `due` (due time, in the format of `time`; may be empty or missing);
-    their sequence is free. The lines of an order must be consecutive. Further columns are kept
-    (`OrderStream.file`).
+    The columns, in any sequence, are `time` (s or ISO 8601, not decreasing), `order` (any name),
+    `sku` (name or id of the SKU), `quantity` (units) and `due` (due time, in the format of `time`;
+    may be empty or missing). The lines of an order must be consecutive. Further columns are kept in
+    `OrderStream.file`.
 
     Parameters
     ----------
@@ -38,8 +38,8 @@ def read_orders(
         Date and time of time zero, used if times are in ISO 8601. Default: midnight before the
         first order.
     classes
-        Names of the classes of orders. If there are any, a column `priority` contains the name of
-        the class of each order; it may be missing, or empty for some orders.
+        Names of the classes of orders. If there are any, a column `priority` contains the class
+        name of each order; the column may be missing, or empty for some orders.
 
     Raises
     ------
@@ -58,10 +58,10 @@ def read_bundles(
 ) -> BundleStream:
     """Read bundles from a .csv or .parquet file.
 
-    The columns are `time` (s or ISO 8601, not decreasing), `sku` (its name or id) and `quantity`
-    (units); their sequence is free. Each line is a bundle. A column `order` may contain names of
-    bundles; a column `due`, if present, must be empty. Further columns are kept
-    (`BundleStream.file`).
+    The columns, in any sequence, are `time` (s or ISO 8601, not decreasing), `sku` (name or id of
+    the SKU) and `quantity` (units). Each line is a bundle. A column `order` may contain names of
+    bundles; a column `due`, if present, must be empty. Further columns are kept in
+    `BundleStream.file`.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def read_bundles(
 
 
 def first_moment(path: Path) -> datetime | None:
-    """Return the time of the first row if it is valid ISO 8601; None otherwise."""
+    """Return the time in the first row of a file; None if it is not a valid ISO 8601 time."""
     try:
         _read(path, _FirstMoment(), Problems(path))
     except _FoundError as found:
@@ -94,27 +94,27 @@ def first_moment(path: Path) -> datetime | None:
 
 
 class _FoundError(Exception):
-    """No further row is needed."""
+    """Raised to stop reading after the first row."""
 
     def __init__(self, moment: datetime | None) -> None:
         self.moment = moment
 
 
 class _FirstMoment:
-    """Rows of which only the first is looked at."""
+    """Receiver that reads only the first row."""
 
     columns = ("time",)
     required = frozenset(("time",))
 
     def begin(self, further: Sequence[str]) -> None:
-        """Further columns are left alone (see `Rows`)."""
+        """Ignore the additional columns (see `Rows`)."""
 
     def take(self, number: int, fields: Sequence[str]) -> None:
-        """Stop at once (see `Rows`)."""
+        """Stop reading after this row (see `Rows`)."""
         raise _FoundError(parsed(fields[0]) if not is_number(fields[0]) else None)
 
     def end(self) -> None:
-        """There is no row."""
+        """Do nothing, as this is called only if the file has no rows."""
 
 
 def _word(path: Path) -> str:

@@ -9,9 +9,9 @@ class StreamRecorder:
     """Collects the orders and bundles of a run as they arrive.
 
     If it is passed to `order_intake` and `bundle_intake`, it records all arrivals, including those
-    that depend on the run, such as the orders of a constant backlog. `orders.build()` returns a
-    stream, which `write_stream` writes to a file; a scenario can read this file if its table
-    `demand` contains `mode = "stream"`.
+    that depend on the run, such as the orders of a constant backlog. `orders.build()` and
+    `bundles.build()` return streams, which `write_stream` writes to files. A scenario can read such
+    a file if its table `demand` (for bundles: `replenishment`) contains `mode = "stream"`.
 
     Attributes
     ----------

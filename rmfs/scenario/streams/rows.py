@@ -1,4 +1,4 @@
-"""Converts rows of a file to orders or bundles, with validation."""
+"""Converts the rows of a file to orders or bundles, and validates them."""
 
 from __future__ import annotations
 
@@ -32,14 +32,14 @@ class Rows(Protocol):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the columns known to rmfs, in the order in which `take` expects them."""
+        """Names of the columns known to rmfs, in the order in which `take` expects their fields."""
 
     @property
     def required(self) -> frozenset[str]:
         """Names of the required columns."""
 
     def begin(self, further: Sequence[str]) -> None:
-        """Store the names of the file's additional columns."""
+        """Store the names of the file's columns that are not in `columns`."""
 
     def take(self, number: int, fields: Sequence[str]) -> None:
         """Process a row.
@@ -49,12 +49,12 @@ class Rows(Protocol):
         number
             Number of the line (CSV) or row (Parquet) in the file.
         fields
-            Fields in the order of `columns`, empty for missing columns; then those of additional
-            columns.
+            Fields of the columns in `columns`, in this order, with an empty text for each column
+            that the file lacks; then the fields of the file's other columns.
         """
 
     def end(self) -> None:
-        """Do what remains to be done after the last row."""
+        """Finish after the last row; for example, add the last order."""
 
 
 class _Fields:
@@ -102,7 +102,7 @@ def _whole(column: str, text: str) -> int:
 
 
 class _StreamRows:
-    """Rows of orders or bundles."""
+    """Converts rows to orders or bundles."""
 
     columns: tuple[str, ...] = ("time", "order", "sku", "quantity", "due")
 
@@ -115,7 +115,7 @@ class _StreamRows:
         self._time_us = 0
 
     def begin(self, further: Sequence[str]) -> None:
-        """Store the names of the additional columns (see `Rows`)."""
+        """Store the names of the file's columns that are not in `columns`."""
         self.file = OrderFileBuilder(further)
 
     def take(self, number: int, fields: Sequence[str]) -> None:
@@ -130,7 +130,9 @@ class _StreamRows:
 
 
 class OrderRows(_StreamRows):
-    """Rows of orders: lines of an order are consecutive and agree in time, due time and priority.
+    """Converts rows to orders; each row is one order line.
+
+    The lines of an order must be consecutive and have the same time, due time and priority.
 
     Parameters
     ----------
@@ -139,12 +141,12 @@ class OrderRows(_StreamRows):
     problems
         Collects the errors of rows.
     word
-        Word for a row in messages: line or row.
+        What error messages call a row: "line" or "row".
     zero
-        Date and time of time zero, for times in ISO 8601 (see `Times`).
+        Date and time at which simulated time is 0, for times in ISO 8601 (see `Times`).
     classes
-        Names of the classes of orders. Without classes, a column `priority` counts as one of the
-        additional columns.
+        Names of the classes of orders. If empty, the content of a column `priority` has no meaning
+        and is stored like that of other columns unknown to rmfs.
     """
 
     required = frozenset(("time", "order", "sku", "quantity"))
@@ -228,12 +230,12 @@ class OrderRows(_StreamRows):
             self._skus, self._units = [], []
 
     def end(self) -> None:
-        """Add the last order."""
+        """Add the last order to the stream."""
         self._close()
 
 
 class BundleRows(_StreamRows):
-    """Rows of bundles: each row is one bundle.
+    """Converts rows to bundles; each row is one bundle.
 
     Parameters
     ----------
@@ -242,11 +244,11 @@ class BundleRows(_StreamRows):
     problems
         Collects the errors of rows.
     word
-        Word for a row in messages: line or row.
+        What error messages call a row: "line" or "row".
     largest
         Capacity of the largest pod, in space units; a larger bundle is an error.
     zero
-        Date and time of time zero, for times in ISO 8601 (see `Times`).
+        Date and time at which simulated time is 0, for times in ISO 8601 (see `Times`).
     """
 
     required = frozenset(("time", "sku", "quantity"))
@@ -286,4 +288,4 @@ class BundleRows(_StreamRows):
         self.file.add_line(number, further)
 
     def end(self) -> None:
-        """Do nothing, as each bundle was added with its row."""
+        """Do nothing, because `take` has already added all bundles."""

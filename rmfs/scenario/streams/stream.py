@@ -1,4 +1,4 @@
-"""Orders and bundles with their times, as arrays."""
+"""Orders and bundles with their arrival times, as arrays."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams.order_file import OrderFile
 
 NO_DUE_US = -1
-"""Stands for the due time of an order that has none."""
+"""Value of `due_us` for an order without a due time."""
 
 
 class _Frozen:
@@ -29,25 +29,25 @@ class _Frozen:
 
 @dataclass(frozen=True)
 class OrderStream(_Frozen):
-    """A stream of n orders with a total of m lines, in order of time.
+    """A stream of n orders with a total of m lines, sorted by arrival time.
 
     Attributes
     ----------
     time_us
-        Arrival time of each order, shape (n,).
+        Arrival time of each order in microseconds, shape (n,).
     due_us
-        Due time of each order, shape (n,); `NO_DUE_US` if it has none.
+        Due time of each order in microseconds, `NO_DUE_US` if it has none, shape (n,).
     first_line
-        Index of the first line of each order, and finally m, shape (n + 1,).
+        Index of the first line of each order, followed by m, shape (n + 1,).
     sku, units
-        SKU (index) and units of each line, shape (m,).
+        SKU (index) and number of units of each line, shape (m,) each.
     file
-        Order names and additional columns of the file from which the stream was read, if any.
+        Order names and additional columns if the stream was read from a file; otherwise None.
     classes
         Names of the classes of orders; empty if orders have no classes.
     priority
-        Index of the class of each order, shape (n,), -1 for an order without a class. The whole
-        attribute is None if `classes` is empty.
+        Index of the class of each order, -1 for an order without a class, shape (n,). None if
+        `classes` is empty.
     """
 
     time_us: NDArray[np.int64]
@@ -63,23 +63,23 @@ class OrderStream(_Frozen):
         return len(self.time_us)
 
     def lines(self, order: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-        """Return the SKU of each line of an order, and the units of each line."""
+        """Return the SKU (index) of each line of an order, and the number of units of each line."""
         here = slice(int(self.first_line[order]), int(self.first_line[order + 1]))
         return tuple(self.sku[here].tolist()), tuple(self.units[here].tolist())
 
 
 @dataclass(frozen=True)
 class BundleStream(_Frozen):
-    """A stream of n bundles, in order of time.
+    """A stream of n bundles, sorted by arrival time.
 
     Attributes
     ----------
     time_us
-        Arrival time of each bundle, shape (n,).
+        Arrival time of each bundle in microseconds, shape (n,).
     sku, units
-        SKU (index) and units of each bundle, shape (n,).
+        SKU (index) and number of units of each bundle, shape (n,) each.
     file
-        Bundle names and additional columns of the file from which the stream was read, if any.
+        Bundle names and additional columns if the stream was read from a file; otherwise None.
     """
 
     time_us: NDArray[np.int64]
@@ -92,7 +92,7 @@ class BundleStream(_Frozen):
 
 
 class OrderStreamBuilder:
-    """Collects orders, at 16 bytes per line and 32 per order.
+    """Collects orders; needs 16 bytes per line and 32 bytes per order.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class OrderStreamBuilder:
         units: Sequence[int],
         priority: int = -1,
     ) -> None:
-        """Add an order; times may not decrease."""
+        """Add an order, which must not arrive before the order added last."""
         self._priority.append(priority)
         self._time_us.append(time_us)
         self._due_us.append(due_us)
@@ -126,7 +126,7 @@ class OrderStreamBuilder:
         return len(self._time_us)
 
     def build(self) -> OrderStream:
-        """Return the orders added so far."""
+        """Return a stream of the orders added so far."""
         return OrderStream(
             _copied(self._time_us),
             _copied(self._due_us),
@@ -139,13 +139,13 @@ class OrderStreamBuilder:
 
 
 class BundleStreamBuilder:
-    """Collects bundles, 24 bytes each."""
+    """Collects bundles; needs 24 bytes per bundle."""
 
     def __init__(self) -> None:
         self._time_us, self._sku, self._units = array("q"), array("q"), array("q")
 
     def add(self, time_us: int, sku: int, units: int) -> None:
-        """Add a bundle; times may not decrease."""
+        """Add a bundle, which must not arrive before the bundle added last."""
         self._time_us.append(time_us)
         self._sku.append(sku)
         self._units.append(units)
@@ -154,7 +154,7 @@ class BundleStreamBuilder:
         return len(self._time_us)
 
     def build(self) -> BundleStream:
-        """Return the bundles added so far."""
+        """Return a stream of the bundles added so far."""
         return BundleStream(_copied(self._time_us), _copied(self._sku), _copied(self._units))
 
 

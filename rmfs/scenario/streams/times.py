@@ -16,7 +16,7 @@ _US = timedelta(microseconds=1)
 
 
 class FieldError(ValueError):
-    """An invalid field; the message names its column, the reason, and what would be valid."""
+    """An invalid field; the message states the column, the reason, and what would be valid."""
 
 
 class Times:
@@ -25,8 +25,9 @@ class Times:
     Parameters
     ----------
     zero
-        Date and time of time zero. Default: midnight before the first time that is read. If
-        `zero` has no time zone, that of the first time with a zone is assumed.
+        Date and time at which simulated time is 0. Default: midnight at the beginning of the day
+        of the first time read. If `zero` has no time zone, it is assumed to be in the zone of the
+        first time that has one.
     """
 
     def __init__(self, zero: datetime | None = None) -> None:
@@ -51,7 +52,7 @@ class Times:
         return nearest_us(time_s)
 
     def _moment(self, column: str, text: str) -> datetime | None:
-        """Return the moment that a field holds, or None if it holds a number."""
+        """Return the date and time in a field, or None if the field contains a number."""
         plain = is_number(text)
         moment = None if plain else parsed(text)
         if moment is None and not plain:
@@ -83,7 +84,7 @@ class Times:
 
 
 def parsed(text: str) -> datetime | None:
-    """Return the date and time that a text in ISO 8601 states; None if the text is invalid."""
+    """Return the date and time given by a text in ISO 8601; None if the text is invalid."""
     try:
         return datetime.fromisoformat(text)
     except ValueError:
@@ -91,7 +92,7 @@ def parsed(text: str) -> datetime | None:
 
 
 def midnight(moment: datetime) -> datetime:
-    """Return the midnight at which the day of a given time begins, in the same time zone."""
+    """Return the beginning (0:00) of the day of a given time, in the same time zone."""
     return moment.replace(hour=0, minute=0, second=0, microsecond=0)
 
 
@@ -111,7 +112,7 @@ def number(column: str, text: str) -> float:
 
 
 def is_number(text: str) -> bool:
-    """Return whether a field contains a number, including nan."""
+    """Return whether a field contains a number; nan and inf count as numbers."""
     try:
         float(text)
     except ValueError:

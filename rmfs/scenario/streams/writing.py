@@ -1,8 +1,8 @@
-"""Writing of streams to files, and the digest, a hash that identifies a stream.
+"""Writes streams to files, and computes their digests, hashes that identify streams.
 
-Every stream has one canonical text: the CSV file written here, with times in s to the microsecond.
-The SHA-256 of this text is the digest of the stream, whatever file the stream was read from. The
-digest of a stream is therefore also the SHA-256 of the CSV file written here.
+Every stream has one canonical text: the content of the CSV file that this module writes for it,
+with times in seconds to six decimal places. The digest of the stream is the SHA-256 of this text.
+It does not depend on the format of the file from which the stream was read.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
 def write_streams(recorded: StreamRecorder, skus: SkuSet, folder: Path) -> dict[str, str]:
     """Write the arrivals of a run to `orders.csv` and `bundles.csv`; return their digests.
 
-    The digests are under the keys `orders` and `bundles`.
+    The keys of the result are `orders` and `bundles`.
 
     Raises
     ------
@@ -108,7 +108,7 @@ def _text(stream: Stream, skus: SkuSet) -> Iterator[str]:
 
 
 def _classes(stream: OrderStream) -> list[str] | None:
-    """Return the name of the class of each order, empty where none is given."""
+    """Return the name of the class of each order, empty for an order without a class."""
     if stream.priority is None:
         return None
     return [("", *stream.classes)[1 + number] for number in stream.priority.tolist()]
@@ -120,7 +120,7 @@ def _seconds(time_us: int) -> str:
 
 
 def _columns(stream: Stream, skus: SkuSet) -> dict[str, NDArray[Any]]:
-    """Return a stream as columns; due is nan where none is given."""
+    """Return a stream as columns; `due` is nan for orders without a due time."""
     lines = {"sku": skus.ids[stream.sku], "quantity": stream.units}
     if isinstance(stream, BundleStream):
         return {"time": stream.time_us / US_PER_S, "order": np.arange(len(stream)), **lines}

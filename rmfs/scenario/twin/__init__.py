@@ -1,4 +1,4 @@
-"""Synthetic twins: generators fitted to files of orders, to be published instead of the files."""
+"""Synthetic twins: generators fitted to order files, which can be published in their place."""
 
 from rmfs.scenario.twin.fitting import Twin as Twin
 from rmfs.scenario.twin.fitting import fit_twin as fit_twin

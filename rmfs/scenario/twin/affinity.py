@@ -1,10 +1,10 @@
-"""Affinity of SKUs, measured by how much more often pairs recur than they would by chance.
+"""Fit of affinity, that is, of how often the same SKUs are ordered together.
 
-The generator gives SKUs random partners. With a probability called the share of affinity, it draws
-the SKU of a line after the first from the partners of the SKU of the line before, and otherwise by
-popularity. To fit this share, orders are simulated with several shares; interpolation then yields
-the share at which pairs of SKUs in neighbouring lines recur, relative to chance, as often as in the
-file.
+The generator gives SKUs random partners. With a certain probability, the share of affinity, it
+draws the SKU of a line after the first from the partners of the preceding line's SKU, and otherwise
+by popularity. To fit this share, orders are simulated with several shares. Interpolation then
+yields the share for which the lift of the simulated orders equals that of the file. The lift states
+how often pairs of SKUs in neighbouring lines recur, relative to chance (see `lift`).
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ TRIES = 16
 def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> float:
     """Return how often pairs of SKUs recur, divided by how often they would recur by chance.
 
-    By chance means that the two SKUs of a pair are drawn independently, except that they differ.
-
-    The result is nan if there are fewer than `LEAST_PAIRS` pairs or no pair recurs.
+    Recurrence is measured by the probability that two of the pairs, chosen at random, are equal. By
+    chance, the two SKUs of a pair would be drawn independently, except that they differ. The result
+    is nan if there are fewer than `LEAST_PAIRS` pairs or no pair recurs.
 
     Parameters
     ----------
@@ -74,10 +74,10 @@ def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> floa
 def neighbours(
     sku: NDArray[np.int64], first_line: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return the first SKU, the second SKU and the order of each pair of consecutive lines.
+    """Return the pairs of neighbouring lines: the first SKU, the second SKU and the order's index.
 
-    Only lines of the same order form a pair. The three arrays have one element per pair; orders are
-    given by their index.
+    Both lines of a pair belong to the same order. Each of the three arrays has one element per
+    pair.
     """
     order = np.repeat(np.arange(len(first_line) - 1), np.diff(first_line))
     here = np.flatnonzero(order[1:] == order[:-1])
@@ -89,12 +89,12 @@ def fit_affinity(
 ) -> Estimate | None:
     """Fit the share of affinity (see `Affinity`).
 
-    The result is None if there are too few pairs of neighbouring lines, or too few of them recur.
+    The result is None if there are too few pairs of neighbouring lines, or too few pairs recur.
 
     Parameters
     ----------
     sku, first_line
-        SKU of each line, and first line of each order, as in `OrderStream`.
+        SKU of each line, and index of the first line of each order, as in `OrderStream`.
     skus
         Function that creates the SKUs of the twin from a share of affinity and a seed.
     seed
@@ -118,7 +118,7 @@ def fit_affinity(
 
 
 def _curve(lines: NDArray[np.int64], skus: Drawn, seed: int) -> tuple[NDArray[np.float64], float]:
-    """Return the log lift of each share, and how much sets of SKUs differ in it."""
+    """Return the log lift at each of `SHARES`, and its standard deviation over sets of SKUs."""
     logs = np.empty((len(SHARES), DRAWS))
     for draw in range(DRAWS):
         for place, share in enumerate(SHARES):
@@ -136,7 +136,7 @@ def drawn_skus(skus: GeneratedSkus, weights: NDArray[np.float64] | None) -> Draw
     Parameters
     ----------
     weights
-        Popularity of each SKU, shape (K,); if None, popularity is drawn.
+        Popularity of each SKU, shape (K,); if None, popularities are drawn as `skus` specifies.
     """
 
     def draw(share: float, seed: int) -> SkuSet:
@@ -160,7 +160,7 @@ def with_affinity(skus: GeneratedSkus, share: float) -> GeneratedSkus:
 
 
 def simulated_lift(lines: NDArray[np.int64], skus: SkuSet, rng: np.random.Generator) -> float:
-    """Return the lift of simulated orders with given numbers of lines; nan if `lift` returns nan.
+    """Return the `lift` of simulated orders with given numbers of lines; nan if undefined.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ def agreements(
     p_popularity: float,
     p_arrivals: float,
 ) -> list[Agreement]:
-    """Compare the orders of a file with those that a scenario generates.
+    """Return figures for the orders of a file, with the same figures for orders from a scenario.
 
     Parameters
     ----------

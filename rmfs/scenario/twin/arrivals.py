@@ -23,11 +23,13 @@ class Arrivals(NamedTuple):
     mean
         Mean number of orders per hour.
     hours
-        Rate in each hour of the day or week, orders per h.
-    dispersion, p
-        Ratio of variance to mean of the number of orders per hour, given the fitted rates
-        (expected: 1 for a Poisson process), and the two-sided p value of a chi-square test of this
-        ratio; both are nan if there are too few hours.
+        Rate in each hour of the day or week, in orders per hour.
+    dispersion
+        Ratio of variance to mean of the number of orders per hour, given the fitted rates; nan if
+        there are too few hours. For a Poisson process, a ratio of 1 is expected.
+    p
+        Two-sided p value of a chi-square test of whether this ratio is 1; nan if there are too few
+        hours.
     """
 
     mean: Estimate
@@ -42,9 +44,9 @@ def fit_arrivals(time_us: NDArray[np.int64], days: int, cycle_h: int) -> Arrival
     Parameters
     ----------
     time_us
-        Arrival time of each order, counted from 0:00 of the first day, shape (n,).
+        Arrival time of each order, in microseconds from 0:00 of the first day, shape (n,).
     days
-        Number of observed days, all of them complete.
+        Number of observed days; each is observed from 0:00 to 24:00.
     cycle_h
         Period in h after which the rates repeat: 24 or 168.
     """
@@ -64,7 +66,7 @@ def fit_arrivals(time_us: NDArray[np.int64], days: int, cycle_h: int) -> Arrival
 def _dispersion(
     each: NDArray[np.int64], expected: NDArray[np.float64], parameters: int
 ) -> tuple[float, float]:
-    """Compare the orders of every single hour with the rate of that hour of the cycle."""
+    """Return `dispersion` and `p` of `Arrivals`, from observed and expected orders per hour."""
     busy = expected > 0
     free = int(busy.sum()) - min(parameters, len(np.unique(np.flatnonzero(busy) % parameters)))
     if free < 1:

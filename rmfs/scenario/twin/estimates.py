@@ -42,7 +42,7 @@ class Agreement(NamedTuple):
     data, twin
         Value of the figure for the data and for the twin; nan if it cannot be computed.
     p
-        p value of the test of fit that belongs to the figure; nan without a test.
+        p value of the goodness-of-fit test for the figure; nan if there is no such test.
     """
 
     name: str
@@ -52,12 +52,12 @@ class Agreement(NamedTuple):
 
 
 def shares(name: str, counts: NDArray[np.int64]) -> list[Estimate]:
-    """Return the relative frequencies of the values 1, 2, ... with Wilson's score intervals.
+    """Return the relative frequency of each value 1, 2, ..., with Wilson's score interval.
 
     Parameters
     ----------
     name
-        Beginning of the name of each estimate; the value (1, 2, ...) is added to it.
+        Beginning of the name of each estimate; the value (1, 2, ...) is appended.
     counts
         Number of occurrences of each value, shape (n,).
     """
@@ -75,7 +75,7 @@ def shares(name: str, counts: NDArray[np.int64]) -> list[Estimate]:
 
 
 def rate(name: str, count: int, hours: float) -> Estimate:
-    """Return a Poisson rate per hour with its exact interval (Garwood)."""
+    """Return a Poisson rate per hour with its exact confidence interval (Garwood)."""
     tail = (1 - LEVEL) / 2
     low = stats.chi2.ppf(tail, 2 * count) / 2 if count else 0.0
     high = stats.chi2.ppf(1 - tail, 2 * count + 2) / 2

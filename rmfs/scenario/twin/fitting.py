@@ -49,12 +49,13 @@ class Twin:
     estimates
         Fitted parameters of the generator, with their confidence intervals.
     agreements
-        Figures of the orders of the file, and the same figures of orders of the twin.
+        Figures computed both for the orders of the file and for orders of the twin.
     orders
         Number of orders in the file.
     skus
-        SKUs of the twin if the scenario needs a file of them, because they cannot be generated from
-        distributions; None otherwise.
+        SKUs of the twin if they have the popularities found in the file (`listed` in `fit_twin`)
+        and must therefore be written to a file; None if the scenario generates them from
+        distributions.
     """
 
     scenario: Scenario
@@ -87,8 +88,8 @@ def fit_twin(
     Raises
     ------
     InputError
-        If the file is invalid or contains too few orders, or no gamma distribution fits the
-        popularity of its SKUs.
+        If the file is invalid or contains too few orders, if `weekly` is true and the file covers
+        fewer than seven days, or if no gamma distribution fits the popularity of its SKUs.
     """
     skus = sku_set(SkuFile(file=path))
     stream = read_orders(path, skus)

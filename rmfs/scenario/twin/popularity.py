@@ -1,9 +1,10 @@
 """Fit of popularity: gamma-distributed weights, fitted to how many times each SKU was ordered.
 
-One line of each order is used, because orders are independent but lines of the same order are not.
-With gamma-distributed weights, the counts are negative binomial. As SKUs that were never ordered
-are not in the file, the likelihood is conditional on a count above zero. The fitted distribution
-also yields the share of SKUs never ordered, and thus the total number of SKUs.
+Only one line of each order is counted, because orders are independent, whereas the lines of an
+order are not. With gamma-distributed weights, the counts have a negative binomial distribution. As
+SKUs that were never ordered are not in the file, the likelihood is conditional on a count above
+zero. The fitted distribution also yields the share of SKUs never ordered, and thus the total number
+of SKUs.
 """
 
 from __future__ import annotations
@@ -50,12 +51,13 @@ def fit_popularity(counts: NDArray[np.int64]) -> Popularity:
     Parameters
     ----------
     counts
-        Number of times each ordered SKU was ordered, at least 1, shape (K,).
+        Number of times that each SKU was ordered, shape (K,). All counts are at least 1, because
+        SKUs that were never ordered are left out.
 
     Raises
     ------
     InputError
-        If there are too few SKUs, or none was ordered twice.
+        If there are too few SKUs, or no SKU was ordered more than once.
     """
     values, often = np.unique(counts, return_counts=True)
     if len(counts) < LEAST_SKUS or values[-1] < 2:
@@ -136,7 +138,7 @@ def _skus(
 
 
 def _curvature(loss: object, at: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the second derivatives, by differences."""
+    """Return the matrix of second derivatives, computed by finite differences."""
     step = 1e-3
     ways = np.eye(2) * step
     made = np.empty((2, 2))
@@ -151,7 +153,7 @@ def _curvature(loss: object, at: NDArray[np.float64]) -> NDArray[np.float64]:
 def _chi_square(
     values: NDArray[np.int64], often: NDArray[np.int64], shape: float, mean: float
 ) -> float:
-    """Test the counts, in bins that hold enough."""
+    """Return the p value of a chi-square test of the counts; nan if there are too few bins."""
     most = int(min(values[-1], 100_000))
     each = np.exp(_log_likelihood(np.arange(1, most + 1), shape, mean)) * often.sum()
     seen = np.zeros(most)

@@ -1,4 +1,4 @@
-"""Output of a twin: the main figures on the terminal, all figures in a file."""
+"""Output of a twin: a table of the main figures for the terminal, and files."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ COLUMNS = ("kind", "name", "value", "low", "high", "twin", "p")
 
 
 def write_twin(twin: Twin, path: Path) -> None:
-    """Write the scenario; if its SKUs cannot be generated from distributions, write them too.
+    """Write the scenario of a twin and, if the twin has a list of SKUs (`Twin.skus`), this list.
 
-    If `path` is NAME.toml, the SKUs are written to NAME-skus.json beside it.
+    If `path` is NAME.toml, the SKUs are written to NAME-skus.json in the same folder.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def write_twin(twin: Twin, path: Path) -> None:
 
 
 def write_table(twin: Twin, path: Path) -> None:
-    """Write all estimates with their confidence intervals, and all agreements, as CSV.
+    """Write all estimates and agreements of a twin as CSV.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def write_table(twin: Twin, path: Path) -> None:
 
 
 def told(twin: Twin) -> Table:
-    """Return the main estimates and all agreements as a table for a terminal."""
+    """Return the main estimates and all agreements of a twin as a table for a terminal."""
     table = Table("", "orders", "95 % interval", "twin", "p", box=None)
     for one in twin.estimates:
         if one.name in ("SKUs", "popularity shape", "affinity share"):

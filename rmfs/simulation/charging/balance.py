@@ -14,14 +14,15 @@ if TYPE_CHECKING:
 
 
 class Balance(NamedTuple):
-    """Long-run power supply of a fleet, and its minimum power demand.
+    """Power that a fleet can receive in the long run, and the minimum power that it needs.
 
     Attributes
     ----------
     given_w
-        Maximum power in W of all chargers, swap stations and waypoints with inductive charging.
+        Total power in W that all chargers, swap stations and waypoints with inductive charging can
+        supply.
     least_w
-        Minimum power demand of the fleet in W: that of its electronics alone.
+        Minimum power that the fleet needs, in W: the power of the robots' electronics alone.
     has_stations
         Whether there is a charger or swap station, to which a robot can be sent for energy.
     """
@@ -50,7 +51,7 @@ def waypoint_power_w(layout: Layout, energy: Energy) -> dict[int, float]:
 
 
 def balance(layout: Layout, energy: Energy) -> Balance:
-    """Return the power available to a fleet and the fleet's minimum demand."""
+    """Return the power that a fleet can receive, and the minimum power that it needs."""
     given_w = sum(
         other.kind.long_run_w
         for other in layout.other_stations
@@ -62,11 +63,11 @@ def balance(layout: Layout, energy: Energy) -> Balance:
 
 
 def working_w(layout: Layout, energy: Energy) -> float:
-    """Estimate the power in W that a working fleet draws.
+    """Estimate the power in W that a working fleet consumes.
 
-    All robots are assumed to drive at top speed, half of the time with a half-full pod. Starts and
-    turns take more power, and waiting takes less; in the shipped layouts, these effects roughly
-    cancel. The result is not a bound.
+    All robots are assumed to drive at top speed all the time, and to carry a half-full pod half of
+    the time. Starts and turns take more power, and waiting takes less; in the shipped layouts,
+    these effects roughly cancel. The result is not a bound.
     """
     pod_kg = energy.pod_kg + energy.goods_kg_per_space * float(layout.pod_capacity.mean()) / 2
     speed = sum(kind.top_speed_m_s for kind in layout.robot_kinds) / len(layout.robot_kinds)
@@ -76,13 +77,13 @@ def working_w(layout: Layout, energy: Energy) -> float:
 
 
 def refuse(layout: Layout, energy: Energy) -> None:
-    """Raise an error if batteries cannot be charged, or only with too little power.
+    """Raise an error if batteries cannot be charged, or if the charging power is too low.
 
     Raises
     ------
     InputError
-        If nothing can charge batteries, or if the available power is below the fleet's minimum
-        demand; in the latter case, the message states the deficit.
+        If nothing can charge batteries, or if the available power is less than the fleet needs at
+        standstill; in the latter case, the message states the deficit.
     """
     found = balance(layout, energy)
     if not found.given_w:

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 
 class Chargers:
-    """All chargers.
+    """All chargers of a run.
 
     Attributes
     ----------
     stations
-        Their indices in the common numbering of all stations.
+        Indices of the chargers in the common numbering of all stations.
     """
 
     def __init__(self, layout: Layout, services: Sequence[Service], fleet: Traffic) -> None:
@@ -40,7 +40,7 @@ class Chargers:
         Raises
         ------
         ValueError
-            If the robot is not at a charger, or is not charging.
+            If the robot is not charging at a charger.
         """
         service = self._services.get(decision.robot.station)
         if service is None or not service.is_charging:

@@ -41,7 +41,7 @@ class EnergyGuard:
     Attributes
     ----------
     needs
-        Upper bounds of the energy that a robot needs for another task.
+        Upper bounds on the energy that a robot needs for another task.
     """
 
     def __init__(
@@ -71,10 +71,10 @@ class EnergyGuard:
         self._agenda.after(LOOK_US, self._look)
 
     def secure(self, consult: Consult) -> None:
-        """Send each free or resting robot to charge if its energy might not suffice for a task.
+        """Send free and resting robots to charge if their energy might not suffice for a task.
 
-        This method must be called before tasks are assigned. A robot that carries a pod stores it
-        first.
+        This method must be called before tasks are assigned. A robot that carries a pod stores the
+        pod first.
         """
         view = self._view
         for robot in [*view.asking.values(), *view.resting.values()]:
@@ -106,7 +106,7 @@ class EnergyGuard:
     # --- robots that strand ---------------------------------------------------------------------
 
     def _look(self) -> None:
-        """Check all levels: robots may have to strand, or to charge although they rest."""
+        """Check all levels for robots that strand, and for resting robots that must charge."""
         batteries, view = self._batteries, self._view
         levels = batteries.levels_j()
         for robot in (levels < batteries.least_j).nonzero()[0].tolist():
@@ -136,7 +136,7 @@ class EnergyGuard:
 
 
 def _most_w(given: Energy, view: View) -> float:
-    """Return the maximum power of a robot at any moment, W."""
+    """Return an upper bound on the power of a robot at any moment, in W."""
     layout = view.layout
     mass = given.robot_kg + given.pod_kg
     mass += given.goods_kg_per_space * float(layout.pod_capacity.max())

@@ -1,9 +1,9 @@
-"""Upper bound of the energy a robot needs for one more task and the way to an energy station.
+"""Upper bound on the energy that a robot needs for a task and the trip to an energy station.
 
 Energy stations are chargers and swap stations. The bound assumes the most distant pods, stations
-and storage locations: for each part of the task, the time of the longest trip without other robots
-is multiplied by an upper bound on the mean power, and the energy of lifting the pod is added. For
-motion from rest to rest, the mean power in W of a robot with a total mass of *m* kg is at most
+and storage locations. For each part of the task, the duration of the longest trip without other
+robots is multiplied by an upper bound on the mean power. The energy for lifting the pod is added.
+For motion from rest to rest, the mean power in W of a robot with a total mass of *m* kg is at most
 *m p* plus the power of its electronics. Here *p* is the larger of the following two bounds in W/kg,
 divided by the efficiency of the drive:
 
@@ -48,7 +48,7 @@ def most_w_per_kg(given: Energy, kind: RobotKind) -> float:
 
 
 class Needs:
-    """Upper bounds of the energy that a robot needs, in J.
+    """Upper bounds on the energy that a robot needs, in J.
 
     Attributes
     ----------
@@ -56,10 +56,10 @@ class Needs:
         For a robot without a pod: fetch any pod, bring it to any station, store it anywhere, and go
         to charge from there.
     store_j
-        For a robot with a pod at a station: store it anywhere, and go to charge from there.
+        For a robot with a pod at a station: store the pod anywhere, and go to charge from there.
     visit_j
-        For a robot with a pod at a station: bring it to any other station, store it anywhere, and
-        go to charge from there.
+        For a robot with a pod at a station: bring the pod to any other station, store it anywhere,
+        and go to charge from there.
     """
 
     task_j: float
@@ -95,7 +95,7 @@ class Needs:
         self._loaded_w, self._work = loaded_w, work
 
     def task_from_j(self, waypoint: int) -> float:
-        """Return a bound like `task_j`, in J, for a robot that stands at a given waypoint.
+        """Return a bound on the energy for the same task as `task_j`, from a given waypoint, in J.
 
         The robot fetches any pod, brings it to the station farthest from the pod, stores it
         anywhere, and goes to charge. The result is never greater than `task_j`.

@@ -1,4 +1,4 @@
-"""Service at a charger: a robot stays until its battery has reached its target level."""
+"""Service at a charger: a robot stays until its battery has reached the target level."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ChargeService:
-    """The service of one charger: it determines when the robot there stops charging.
+    """The service of one charger; it determines when a robot stops charging.
 
     Attributes
     ----------
@@ -45,11 +45,11 @@ class ChargeService:
 
     @property
     def is_charging(self) -> bool:
-        """Whether a robot is charging here."""
+        """Whether a robot is charging at this charger."""
         return self._task is not None
 
     def go_on(self) -> None:
-        """Start charging the robot at the charger, if a robot is there."""
+        """Start charging the robot at the charger, if there is one."""
         robot = self.station.robot
         task: Any = self._world.robots[robot].task if robot >= 0 else None
         if self._task is None and isinstance(task, ChargeTask):
@@ -57,19 +57,19 @@ class ChargeService:
             self._enter()
 
     def set_power(self, power_w: float) -> None:
-        """Change the charging power, in W; the caller must also set it in `Traffic`."""
+        """Change the charging power, in W; the caller must also change it in `Traffic`."""
         self.power_w = power_w
         if self._task is not None:
             self._cancel()
             self._enter()
 
     def unplug(self) -> None:
-        """End the charging of the robot that is here."""
+        """End the charging of the robot at the charger."""
         self._cancel()
         self._end()
 
     def _enter(self) -> None:
-        """Enter when the level will be reached; never, if that cannot be."""
+        """Schedule the end of charging, if the target level can be reached."""
         batteries, task = self._world.batteries, self._task
         assert batteries is not None and task is not None
         until = min(task.until_share, batteries.given.full_share)

@@ -22,17 +22,17 @@ if TYPE_CHECKING:
 def count_energy(
     given: Energy | None, layout: Layout, world: World, fleet: Traffic, seed: int
 ) -> list[Observer]:
-    """Set up the counting of energy and the batteries, if the scenario specifies them.
+    """Set up energy measurement and batteries, as far as the scenario specifies them.
 
     Returns
     -------
     list[Observer]
-        Observers that the run needs to count energy; empty if energy is not counted.
+        Observers that the run needs to measure energy; empty if energy is not measured.
 
     Raises
     ------
     InputError
-        If there are batteries that cannot be charged, or only with too little power.
+        If there are batteries but they cannot be charged, or the charging power is too low.
     """
     if given is None:
         return []

@@ -17,13 +17,12 @@ if TYPE_CHECKING:
 
 
 class SwapService:
-    """One swap station with its stock; all batteries in stock charge independently of each other.
+    """One swap station and its stock of batteries, which charge independently of each other.
 
     Attributes
     ----------
     stock
-        For each battery in stock, the level (share) that it had on arrival, and the time (s) of its
-        arrival.
+        Level (share of capacity) at arrival and time of arrival (s), for each battery in stock.
     """
 
     def __init__(

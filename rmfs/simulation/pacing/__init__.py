@@ -36,13 +36,13 @@ class Pacing(Protocol):
     Attributes
     ----------
     waits
-        Whether solvers run beside the simulation, so that `limit_us` may have to wait for them.
+        Whether solvers run beside the simulation; `limit_us` may then have to wait for them.
     """
 
     waits: bool
 
     def begin(self, modules: Iterable[str], give: Return) -> None:
-        """Prepare the optimisers, before wall time is measured.
+        """Prepare the optimisers; called before the measurement of wall time begins.
 
         Parameters
         ----------
@@ -51,8 +51,8 @@ class Pacing(Protocol):
         give
             Function to be called once for each question that has been answered or has failed,
             possibly from within `ask`. Its arguments are the call, which holds the answer or the
-            reason for the failure, and the simulated time (us) at which the
-            controller is to be told.
+            reason for the failure, and the simulated time (us) at which the controller is to be
+            notified.
         """
         ...
 

@@ -108,7 +108,7 @@ class Computed(ABC):
 
     @abstractmethod
     def seconds(self, answer: Answer) -> float:
-        """Return the simulated time from the question until its answer takes effect, in s."""
+        """Return the simulated time in s from a question until this answer to it takes effect."""
 
 
 class Instant(Computed):
@@ -122,8 +122,8 @@ class Instant(Computed):
 class Work(Computed):
     """Answers take simulated time according to the work of the solver.
 
-    This time is the sum of the times for the call, for each unit of work, and for each nonzero of
-    the solver's model.
+    The time consists of a constant per call, and of amounts proportional to the solver's work and
+    to the number of nonzeros of its model.
     """
 
     def __init__(self, settings: WorkPacing) -> None:

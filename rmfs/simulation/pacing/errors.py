@@ -6,8 +6,8 @@ from rmfs.errors import ReplayError as ReplayError
 
 
 class OptimiserError(RuntimeError):
-    """An optimiser failed in a reproducible run, or a worker process could not start.
+    """An optimiser failed with a pacing other than `wall`, or a worker process could not start.
 
-    In a reproducible run, the controller's own rule does not take over after a failure, as this
-    would hide the failure.
+    With a pacing other than `wall`, results are reproducible. Therefore, the controller's own rule
+    does not take over after a failure, as this would hide the failure.
     """

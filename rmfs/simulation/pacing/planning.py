@@ -1,4 +1,4 @@
-"""Modes of path planning, which determine how much simulated time plans take."""
+"""Modes of path planning, which determine the simulated time needed to compute a plan."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ class _Planning(Model):
 
 
 class InstantPlanning(_Planning):
-    """Plans take no simulated time."""
+    """Computing a plan takes no simulated time."""
 
     mode: Literal["instant"] = "instant"
 
 
 class FixedPlanning(_Planning):
-    """Every plan takes the same simulated time."""
+    """Computing a plan takes a constant simulated time."""
 
     mode: Literal["fixed"] = "fixed"
     seconds: NotNegative
@@ -61,7 +61,7 @@ class FixedPlanning(_Planning):
 
 
 class WorkPlanning(_Planning):
-    """Plans take simulated time per search, and per label of the search."""
+    """Computing a plan takes a constant simulated time per search, and another per label."""
 
     mode: Literal["work"] = "work"
     seconds_per_label: NotNegative = SECONDS_PER_LABEL
@@ -72,7 +72,7 @@ class WorkPlanning(_Planning):
 
 
 class WallPlanning(_Planning):
-    """A plan takes simulated time: the wall time of its search, times `speed`."""
+    """The simulated time needed to compute a plan is the wall time of its search, times `speed`."""
 
     mode: Literal["wall"] = "wall"
     speed: Positive = 1.0
@@ -80,7 +80,7 @@ class WallPlanning(_Planning):
 
 
 class ReplayPlanning(Model):
-    """Plans take the times recorded in a run; the planning parameters of that run apply as well."""
+    """Computing plans takes the simulated times recorded in a run, with that run's parameters."""
 
     model_config = _Planning.model_config
     mode: Literal["replay"] = "replay"
@@ -110,8 +110,8 @@ def planning_settings(overrides: Overrides) -> PlanningSettings:
     Parameters
     ----------
     overrides
-        Pairs of a list of keys and a value. If the list is empty, the value is the mode, such as
-        `fixed=0.3`; otherwise the list names a parameter, as in `(["period_s"], 5)`.
+        Pairs of a list of keys and a value. If the list is empty or `["mode"]`, the value is the
+        mode, such as `fixed=0.3`; otherwise the list names a parameter, as in `(["period_s"], 5)`.
 
     Raises
     ------
@@ -154,14 +154,14 @@ def let_plans_take_time(
     planner
         Name of the fleet's path planner.
     read
-        Function that reads the planning parameters and the searches of a recorded run from its
-        folder.
+        Function of the folder of a recorded run; it reads and returns the planning parameters and
+        the searches of that run.
 
     Raises
     ------
     InputError
-        If the planner does not plan one trip at a time, or if no search for a plan was recorded
-        in the run to be replayed.
+        If the planner does not plan one trip at a time, or if planning took no simulated time in
+        the run to be replayed.
     """
     tape: Tape = []
     how = settings

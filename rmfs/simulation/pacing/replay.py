@@ -38,7 +38,7 @@ class Replay:
         self._give = give
 
     def ask(self, call: Call) -> None:
-        """Give the recorded answer, if the recorded run got one.
+        """Give the recorded answer, if the question was answered in the recorded run.
 
         Raises
         ------

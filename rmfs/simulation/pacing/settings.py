@@ -33,7 +33,7 @@ class InstantPacing(_Mode):
 
 
 class WallPacing(_Mode):
-    """Optimisers run beside the simulation; their wall time, times `speed`, is simulated time."""
+    """Optimisers run beside the simulation; answers take `speed` times their wall time."""
 
     mode: Literal["wall"] = "wall"
     speed: Positive = 1.0
@@ -47,8 +47,8 @@ class WallPacing(_Mode):
 class WorkPacing(_Mode):
     """Optimisers take simulated time according to their work.
 
-    This time is the sum of the times for the call, for each unit of work, and for each nonzero of
-    the solver's model.
+    The time consists of a constant per call, and of amounts proportional to the solver's work and
+    to the number of nonzeros of its model.
     """
 
     mode: Literal["work"] = "work"

@@ -49,7 +49,8 @@ class Wall:
     workers are busy, but not the time for which `ask` waits for a worker that is still starting.
     While there is no answer, the simulated time since the question was asked is at most `speed`
     times the question's wall time so far (RAWSim-O paper, section 3.1). The answer takes effect
-    when the simulated time since the question was asked is `speed` times the question's wall time.
+    when the simulated time since the question was asked reaches `speed` times the question's wall
+    time.
 
     Parameters
     ----------
@@ -68,7 +69,7 @@ class Wall:
         self._modules: list[str] = []
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
-        """Start the workers and wait until they are ready, if any controller uses optimisers.
+        """If any controller uses optimisers, start the workers and wait until they are ready.
 
         Raises
         ------

@@ -45,7 +45,7 @@ class Reply:
     at_s
         Time at which the answer was ready or the failure was noticed, on the monotonic clock, in s.
     failure
-        Reason why there is no answer, in one line; empty if there is one.
+        Reason why there is no answer, in one line; empty if there is an answer.
     """
 
     at_s: float
@@ -68,7 +68,7 @@ class Worker:
     number
         Number of the question on which the worker is working; -1 if it is idle.
     is_ready
-        Whether its modules are imported.
+        Whether the worker has imported its modules.
     """
 
     modules: list[str]
@@ -174,7 +174,7 @@ class Workers:
     def idle(self) -> Worker | None:
         """Return an idle worker that is ready; None if all are busy.
 
-        If there are idle workers but none is ready yet, this waits for the first of them.
+        If there are idle workers but none is ready yet, wait until one of them is ready.
         """
         idle = [worker for worker in self._workers if worker.number < 0]
         if not idle:

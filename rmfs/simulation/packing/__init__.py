@@ -1,1 +1,1 @@
-"""Orders after the pick stations: transport to the put wall, the wall, and packers."""
+"""Orders after picking: transport to the put wall, consolidation in the wall, and packing."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Packers:
-    """A number of identical packers.
+    """Identical packers.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class Packers:
     Attributes
     ----------
     waiting
-        Parcels that wait for a packer, the one that came first at the front.
+        Parcels that wait for a packer, in the order of their arrival.
     busy
         Number of busy packers.
     """

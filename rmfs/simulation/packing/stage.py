@@ -1,10 +1,10 @@
 """The packing stage, from the pick stations to the packed parcel.
 
-A pick station asks the stage before it releases a tote with an order, or with a part of one. If the
-put wall, or the conveyor to it, is full, the tote stays in its order slot. As soon as there is
-room, the stage lets the station release the tote; if that takes too long, the tote is carried to
-the wall by hand. Steps that take no time have no entry in the agenda, so that a stage without any
-delays does not change the results of the run.
+Before a pick station releases a tote with an order, or with a part of an order, it asks the stage.
+If the put wall, or the conveyor to it, is full, the tote stays in its order slot. As soon as there
+is room, the stage lets the station release the tote. A tote that has waited for too long is carried
+to the wall by hand, even if the wall is full. Steps that take no time have no entry in the agenda,
+so that a stage without any delays does not change the results of the run.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class PackingStage(Observer):
                 self._services.append(service)
 
     def takes(self, order: Order) -> bool:
-        """Whether an order may leave its pick station now; if not, the stage lets it go later."""
+        """Return whether an order may leave its pick station now; if not, hold it until it may."""
         if self._has_room(order):
             return True
         after_us = round(self._given.by_hand_after_s * 1e6)
@@ -108,7 +108,7 @@ class PackingStage(Observer):
             self._let_go()  # parts that had to wait for a slot need none any more
 
     def order_assigned(self, order: Order) -> None:
-        """Withdraw a part of an order from those waiting to leave if it has got further lines."""
+        """Stop holding a part of an order for release if further lines have been assigned to it."""
         for held in self._wall.held:
             if held.order is order:
                 self._forget(held)
@@ -170,14 +170,14 @@ def packing_stage(
     world: World,
     events: Observer,
 ) -> list[Observer]:
-    """Return a list with the packing stage of the scenario; an empty list if it has none."""
+    """Return a list with the packing stage; the list is empty if the scenario has none."""
     if given is None:
         return []
     return [PackingStage(given, layout, services, seed, agenda=agenda, world=world, events=events)]
 
 
 def travel_s(given: ToteTravel, layout: Layout) -> NDArray[np.float64]:
-    """Return the travel time of a tote from each pick station to the wall, in s, shape (S,)."""
+    """Return the travel times in s of a tote to the put wall, one per pick station."""
     at = [station.waypoint for station in layout.pick_stations]
     x_m, y_m = layout.x_m[at], layout.y_m[at]
     if given.speed_m_s is None:

@@ -1,1 +1,1 @@
-"""Pickers at the pick stations: their presence, and the time that each unit takes them."""
+"""Pickers at the pick stations: when they are present, and how long they take for each unit."""

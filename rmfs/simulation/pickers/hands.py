@@ -22,7 +22,7 @@ TIMES, ERRORS, SPEEDS = range(3)
 
 
 class Hands(Observer):
-    """Determines how each unit is picked: by whom, for how long, and whether correctly.
+    """Determines, for each unit, who picks it, how long this takes, and whether it is correct.
 
     Parameters
     ----------
@@ -55,8 +55,8 @@ class Hands(Observer):
     def first_of(self, station: int, task: PickTask) -> Pick | None:
         """Return the task's first pick from the face that the picker sees; None if there is none.
 
-        Only picks for orders at the station count. Before the first pick of a visit, or if pods
-        have no faces, the picker sees no face.
+        Only picks for orders at the station count. Before the first pick of a visit, and if pods
+        have no faces, the result is None.
         """
         faces, shown = self._faces, self._shown(station)
         if faces is None or shown < 0:

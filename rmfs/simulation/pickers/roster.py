@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class RosterClock:
-    """Lets pickers come and leave according to the roster; without one, all come at time zero.
+    """Lets pickers come and leave according to the roster; without a roster, all come at time zero.
 
     Parameters
     ----------
@@ -53,11 +53,11 @@ class RosterClock:
             self._breaks_us = [_us(period) for period in given.breaks_s]
 
     def begin(self) -> None:
-        """Let the pickers come who are present at time zero, and schedule the first change."""
+        """Let the pickers on duty at time zero come, and schedule the first change."""
         self._change()
 
     def _change(self) -> None:
-        """Let pickers come or leave that are due, and schedule the next change."""
+        """Let pickers come and leave according to the current shift; schedule the next change."""
         staff, now_s = self._staff, self._world.now_s
         shift = self._shift()
         for picker in staff.pickers:

@@ -1,4 +1,4 @@
-"""CA schedule: plans the charging of the whole fleet ahead."""
+"""CA schedule: plans the charging of the whole fleet in advance."""
 
 from __future__ import annotations
 
@@ -33,10 +33,11 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
 
     Every `period_s` seconds, a model is given the battery levels of all robots, the charging
     places, and a forecast of the number of robots needed for work. It plans `slots` time slots
-    ahead, and minimises the time for which needed robots are missing plus the robot time that
-    later charging will take. Robots whose stay at a charging place is due are sent there as soon as
-    they are free; charging robots stay until a new plan makes them leave. Until the first answer,
-    and after a failure, the rule `threshold` applies, with `below_share` and `until_share`.
+    ahead. The main terms of its objective are the time for which needed robots are missing, and the
+    robot time that charging will take after these time slots. Robots whose stay at a charging place
+    is due are sent there as soon as they are free. Charging robots stay until a new plan makes them
+    leave or their battery is full. Until the first answer, and after a failure, the rule
+    `threshold` applies, with `below_share` and `until_share`.
     """
 
     parameters_model = ScheduleParameters
@@ -92,12 +93,19 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
             yield from self._carry_out(batteries)
 
     def wanted_share(self, robot: Robot, share: float) -> float:
-        """Return `until_share` if the level `share` is less than `below_share`, otherwise 0."""
+        """Return the level up to which a robot should charge by the rule `threshold`, or 0.
+
+        The result is `until_share` if the robot's present level `share` is below `below_share`.
+        Otherwise it is 0, and the robot should not charge.
+        """
         given = self.parameters
         return given.until_share if share < given.below_share else 0.0
 
     def target_share(self) -> float:
-        """Return the level of a full battery, because the schedule determines when robots leave."""
+        """Return the level of a full battery, up to which any robot may charge.
+
+        The schedule determines which robots leave earlier.
+        """
         batteries = self.view.batteries
         return 1.0 if batteries is None else batteries.given.full_share
 
@@ -138,7 +146,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
                     yield By(Unplug(view.robots[robot_here]), call)
 
     def _leave(self, batteries: Batteries) -> Iterator[Unplug]:
-        """By the rule, let robots leave that have reached the upper level."""
+        """Make robots leave that have reached `until_share`, as by the rule `threshold`."""
         for charger in self.view.chargers:
             here = charger.robot
             enough = max(self.parameters.until_share, batteries.enough_share)

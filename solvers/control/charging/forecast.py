@@ -23,13 +23,13 @@ class _Seen(NamedTuple):
 
 
 class Forecast:
-    """Counts the robots in use for work; recent counts yield a forecast of how many are needed.
+    """Forecasts the number of robots needed for work from recent counts of robots in use.
 
-    Not counted are robots that rest, robots that charge or are on their way to do so, and all but
-    two of the robots in the queue of each pick or replenishment station. Some stations with work
-    have no robot at the head of their queue. Therefore, the forecast multiplies the counts by the
-    number of stations with work, and divides them by the number of stations with work that have a
-    robot at the head of their queue; both numbers are summed over the times of the counts.
+    A count excludes robots that rest, charge or are on their way to charge, and all but two of the
+    robots in the queue of each pick or replenishment station. If some stations with work have no
+    robot at the head of their queue, more robots are needed than are in use. The forecast therefore
+    multiplies each count by a ratio: the number of stations with work, divided by the number of
+    those that have a robot at the head of their queue, both summed over all recent counts.
 
     Parameters
     ----------

@@ -66,8 +66,8 @@ def groups_of(view: View, batteries: Batteries) -> list[Group]:
 def slot_s(groups: Sequence[Group], batteries: Batteries, share: float) -> float:
     """Return the length of a time slot, in s.
 
-    This is the time in which the most powerful charger charges `share` of a battery. Without
-    chargers, it is the longest mean time per swap (`swaps_s`) of all groups.
+    This is the time in which the most powerful charger supplies the fraction `share` of a battery's
+    capacity. Without chargers, it is the longest mean time per swap (`swaps_s`) of all groups.
     """
     power_w = max((group.power_w for group in groups), default=0.0)
     if power_w > 0:

@@ -32,18 +32,18 @@ if TYPE_CHECKING:
 class PileOnControl(PickOrderAssignment[PileOnParameters]):
     """Maintains a plan: orders that wait for slots, and called pods that wait for robots.
 
-    A model extends the plan. It is asked, at most once in `buffer_s` seconds, after the events in
-    `triggers`: a station for which no pod is called runs out of work within the horizon, a pod
-    reaches a station, or a station with a free slot has no planned orders. The model determines
-    which orders go to which station, and which pods are called for them. It also returns
-    *prospects*: orders that the same pods can serve as soon as slots are free. Free slots get the
-    planned orders, and free robots fetch the called pods; parts of the plan that have become
-    invalid are dropped.
+    A model extends the plan. It is asked, at most once in `buffer_s` seconds, after the events
+    selected by `triggers`: a station for which no pod is called runs out of work within the
+    horizon, a pod reaches a station, or a station with a free slot has no planned orders. The model
+    determines which orders go to which station, and which pods are called for them. It also returns
+    *prospects*: orders that the same pods can serve as soon as slots are free. Planned orders are
+    assigned to free slots, and free robots fetch the called pods. Parts of the plan that have
+    become invalid are dropped.
 
     A robot that is to bring a pod to a station fetches the nearest pod called for this station. If
     the optimiser fails, its method `greedy` decides. PPS lexicographic with its defaults chooses
-    pods for replenishment, and for pick stations for which no pod is called although pods under way
-    do not bring all units needed.
+    pods for replenishment. It also chooses a pod for a pick station if no pod is called for the
+    station and the pods under way do not bring all units needed there.
     """
 
     parameters_model = PileOnParameters
@@ -67,7 +67,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     # --- orders ---------------------------------------------------------------------------------
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Record that a pod has reached a station: further orders may use its stock."""
+        """Record that a pod has reached a station, as further orders may use the pod's stock."""
         self._arrived = True
 
     def next_event_s(self) -> float:
@@ -75,7 +75,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Decision]:
-        """Fill slots by the plan; when the plan has to be extended, ask the optimiser."""
+        """Assign planned orders to free slots; ask the optimiser if the plan has to be extended."""
         yield from self._carry_out()
         if not self._buffer.is_over(not self.in_flight and self._is_short()):
             return
@@ -127,8 +127,7 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
         """Return the nearest pod that is called for a station and can serve an open request there.
 
         If no pod at all is called for the station, and pods under way do not bring all units that
-        its orders need, PPS lexicographic chooses a pod. If called pods exist but none of them can
-        serve an open request, or no further units are needed, the result is -1.
+        its orders need, PPS lexicographic chooses a pod. In all other cases, the result is -1.
         """
         called = self._plan.pods[station.index]
         pods = [pod for pod in called if self._plan.useful(pod, station)]

@@ -80,7 +80,7 @@ class JointParameters(SearchParameters):
 
     @property
     def weights(self) -> Weights:
-        """Return the weights of the objective, in seconds of a robot."""
+        """Return the weights of the objective, in seconds of robot time."""
         return Weights(
             visit=self.visit_s,
             complete=self.reward_s,

@@ -27,7 +27,7 @@ class Planned:
     Attributes
     ----------
     call
-        The question whose answer planned the item; None if a rule did.
+        The question whose answer contained the item; None if a rule planned it.
     """
 
     item: Item
@@ -35,12 +35,12 @@ class Planned:
 
 
 class Called(NamedTuple):
-    """How a pod was called for a station.
+    """A decision to bring a pod to a station, and the robot that is to fetch the pod.
 
     Attributes
     ----------
     call
-        The question whose answer called the pod; None if a rule did.
+        The question whose answer contained the decision; None if a rule made it.
     robot
         The robot that is to fetch the pod; -1 if any robot may.
     """
@@ -101,7 +101,7 @@ class Plan:
         Parameters
         ----------
         pays
-            Returns whether splitting an order is worth its cost; None: always.
+            Function that returns whether splitting an order is worth its cost; None: it always is.
         """
         planned = [one.item for items in self.items for one in items]
         orders = [item.order for item in planned if item.line is not None]
@@ -114,7 +114,7 @@ class Plan:
         call: Call | None,
         robots: Sequence[Robot] = (),
     ) -> None:
-        """Add the valid parts of a solution; count the rest as stale.
+        """Add the valid parts of a solution to the plan; count the rest as stale.
 
         Parameters
         ----------
@@ -128,7 +128,8 @@ class Plan:
             The question that the solution answers; None if the optimiser failed and the method
             `greedy` decided.
         robots
-            Robots behind the indices of the solution; without them, called pods have no robot.
+            Robots to which the indices in `pod_robot` refer. Default: none; any robot may then
+            fetch a called pod.
         """
         pod_station, pod_robot = (np.asarray(solution[k]) for k in ("pod_station", "pod_robot"))
         for pod in np.flatnonzero(pod_station >= 0).tolist():
@@ -154,10 +155,10 @@ class Plan:
         """Yield items that can be assigned to a station now, one at a time.
 
         Items that the pod at the head of the queue can serve come first. The reserved slots
-        (`kept_slots`) are for these items, and for items served by a called pod that can serve no
-        open request of the station yet. Items are dropped and counted as stale if they have left
-        the backlog or, unless `later`, if pods called or under way no longer have enough units for
-        them.
+        (`kept_slots`) are for these items, and for items of a called pod that can serve none of the
+        station's open requests, because such a pod is not fetched before one of its items has a
+        slot. Items are dropped and counted as stale if they have left the backlog or, unless
+        `later`, if pods called or under way no longer have enough units for them.
         """
         self._forget_pods(station)
         waiting = self.items[station.index]
@@ -192,7 +193,7 @@ class Plan:
         )
 
     def _head(self, station: PickStation) -> int:
-        """Return the pod at the head of the queue, if it is there for picks; or -1."""
+        """Return the pod at the head of the queue if it is there for picks, otherwise -1."""
         if station.robot < 0:
             return -1
         pod = self._view.robots[station.robot].pod
@@ -203,7 +204,7 @@ class Plan:
         return all(available(line.sku, pod) >= line.units for line in item.lines)
 
     def _covered(self, item: Item, station: PickStation) -> bool:
-        """Whether pods under way and pods called still have the units to spare."""
+        """Whether pods under way or called have enough unreserved units for an item."""
         inventory, index = self._view.inventory, station.index
         available, need = inventory.available.item, self._view.need.item
         for line in item.lines:
@@ -214,7 +215,7 @@ class Plan:
         return True
 
     def _forget_pods(self, station: PickStation) -> None:
-        """Drop pods that have been taken, or that are no longer needed here."""
+        """Drop called pods that are no longer available, or no longer needed at the station."""
         pods = self.pods[station.index]
         for pod in list(pods):
             wanted = self.useful(pod, station) or self._is_planned_for(pod, station)

@@ -30,8 +30,8 @@ class Question:
     method
         `joint`, `cp_sat`, `greedy` or `hadgs`.
     limits, pruning
-        Limits on CP-SAT's search, and on the number of pairs (such as pod and station) that it may
-        choose from.
+        Limits on CP-SAT's search, and on the number of candidates, such as pods for each station,
+        among which it chooses.
     bound_steps
         Number of steps of the search for a lower bound on the cost of every decision.
     """
@@ -54,10 +54,10 @@ def solve(question: Question) -> Answer:
     Returns
     -------
     Answer
-        For each order (or line, if orders are split), `station`, where it gets a slot, and
-        `prospect`, where pods can serve it although it gets no slot now. For each pod,
-        `pod_station`, to which it is called, and `pod_robot`, the robot that fetches it; -1 for
-        none. The bound is valid for all decisions that the snapshot allows.
+        For each order (or line, if orders are split): `station`, at which it gets a slot, and
+        `prospect`, the station whose pods can serve it although it gets no slot now. For each pod:
+        `pod_station`, to which it is called, and `pod_robot`, the robot that fetches it. A value of
+        -1 means none. The bound is valid for all decisions that the snapshot allows.
     """
     data = question.data
     if question.method == "joint":

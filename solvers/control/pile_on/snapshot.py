@@ -65,14 +65,14 @@ class Snapshot:
 def take(
     view: View, plan: Plan, given: JointParameters, robots: Sequence[Robot] | None = None
 ) -> Snapshot | None:
-    """Collect what is to be decided now; None if there is nothing.
+    """Return a snapshot of what is to be decided now; None if there is nothing to decide.
 
     Orders that stock cannot serve are omitted. So are orders in the plan: their units count as
     demand of the station for which they are planned, and the pods that the plan calls count as
-    under way. At each station, the model may fill as many slots as there are orders (or lines, if
-    orders are split) that pods under way can serve without another pod, and one more if a pod may
-    be called to the station. With `when_needed = false`, it may fill all free slots for which
-    nothing is planned.
+    under way. At each station, the model may fill one slot for each order (or line, if orders are
+    split) that pods under way can serve on their own, and one further slot if a pod may be called
+    to the station. With `when_needed = false`, it may fill all free slots for which nothing is
+    planned.
 
     Parameters
     ----------
@@ -110,7 +110,10 @@ def take(
 def _worth_splitting(
     view: View, plan: Plan, given: JointParameters, open_units: NDArray[np.int64]
 ) -> Callable[[Order], bool] | None:
-    """Return which orders cost more than a part if served whole now; None: parts are free."""
+    """Return a test of whether an order should be split; None if splitting costs nothing.
+
+    The test is true if serving the whole order now would cost more than an additional tote.
+    """
     if not given.split or not given.part_s:
         return None
     whole = [Item(order) for order in view.orders if len(order.lines) > 1 and not order.parts]
@@ -142,7 +145,7 @@ def _arrays(
     items: Sequence[Item],
     open_units: NDArray[np.int64],
 ) -> PileOn:
-    """Build the input; slots limit how much a station may plan ahead."""
+    """Build the input of the model; the slots limit how many orders may be planned ahead."""
     rows = [
         (number, line.sku, line.units)
         for number, item in enumerate(items)

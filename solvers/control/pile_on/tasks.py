@@ -83,12 +83,12 @@ _ASKS: dict[Trigger, AsksTasks] = {
 class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     """Asks a model which orders take slots, which pods come, and which robots fetch them.
 
-    The model is asked, at most once per `buffer_s`, after the events in `triggers`, if a station
-    has a free slot for which no order is planned, or open requests that the pods under way to it
-    cannot serve. It chooses from the robots that carry no pod and have no task other than resting.
-    Its answer is added to a plan: planned orders get slots when slots are free, and called pods are
-    fetched by the robots that the answer names. If the robot named for a pod is no longer free, the
-    nearest free robot fetches the pod.
+    After the events in `triggers`, at most once in `buffer_s` seconds, the model is asked if a
+    station has a free slot for which no order is planned, or has open requests that the pods under
+    way to the station cannot serve. The model chooses from the robots that carry no pod and have no
+    task other than resting. Its answer is added to a plan: planned orders get slots when slots are
+    free, and called pods are fetched by the robots that the answer names. If the robot named for a
+    pod is no longer free, the nearest free robot fetches the pod.
 
     All other decisions are made by rules. A robot keeps its pod at the station while there is work
     for the pod, then (with `other_stations`) takes it to pick stations nearby that the pod can
@@ -124,9 +124,9 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         self._changed = True
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Record that the model may now decide differently.
+        """Record an event in `triggers`, after which the model may be asked.
 
-        A new order changes nothing as long as no robot is resting.
+        A new order is recorded only if a robot is resting.
         """
         asks = _ASKS[trigger] in self.parameters.triggers
         self._changed |= asks and (trigger is not Trigger.NEW_ORDER or bool(self.view.resting))
@@ -196,7 +196,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     # --- what the model leaves open -------------------------------------------------------------
 
     def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
-        """Use a pod again that has been served, or park it."""
+        """Keep a pod at its station, bring it to another pick station, or park it."""
         station = robot.station
         if station >= 0 and consult.serves(robot.pod, station):
             yield bring(self.view, robot, robot.pod, station)
@@ -210,7 +210,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
             yield Park(robot, place)
 
     def _elsewhere(self, robot: Robot, consult: Consult) -> int:
-        """Return the pick station nearby that PPS chooses for the pod it carries, or -1."""
+        """Return the pick station nearby that PPS chooses for the robot's pod, or -1."""
         given = self.parameters
         if not given.other_stations:
             return -1

@@ -1,3 +1,3 @@
-"""TA planning: plans several visits of pods per station ahead, with orders and robots."""
+"""TA planning: plans several future visits of pods to each station, and the orders they serve."""
 
 from rmfs.solvers.control.planning.controller import PlanningControl as PlanningControl

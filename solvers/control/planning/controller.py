@@ -43,19 +43,19 @@ _WORTH_A_PLAN = 2
 class PlanningControl(JointAllocation[PlanningParameters]):
     """Plans the next visits of pods to every pick station, but carries out only what is due.
 
-    The model is asked, at most once per `buffer_s`, when a pod has reached a pick station, when a
-    robot without a pod is free, or when an order has arrived while a robot rests or a station has
-    more than two free slots. It plans several visits to each station, and which orders each visit
-    serves: whole orders, which keep their slot until their last pod has come, or, with `split`,
-    single lines. The search for a plan starts from the previous plan. Only two kinds of steps are
-    carried out: an order gets its slot once its first pod is under way, and a station with less
-    than `horizon_s` of work on pods under way is sent its next pod, by the free robot nearest to
-    the pod.
+    The model is asked, at most once in `buffer_s` seconds, when a pod has reached a pick station,
+    when a robot without a pod is free, or when an order has arrived while a robot rests or a
+    station has more than two free slots. It plans several visits to each station, and the orders
+    that they serve. Orders are planned whole, and each keeps its slot until its last line has been
+    picked; with `split`, single lines are planned instead. The search for a plan starts from the
+    previous plan. Only two kinds of steps of the plan are carried out. An order gets its slot once
+    its first pod is under way. The next pod of a station is fetched, by the free robot nearest to
+    the pod, if the pods under way to the station bring less than `horizon_s` seconds of work.
 
     All other decisions are made by rules. A robot keeps its pod at the station while there is work
     for the pod. Then it takes the pod to a replenishment station where bundles for the pod wait or,
-    if there are none, parks the pod where PSA says. While the stock is below `stock_floor`, some
-    robots (`bundle_share`) bring pods to replenishment stations; while the stock is below
+    if there is no such station, parks it where PSA says. While the stock is below `stock_floor`,
+    some robots (`bundle_share`) bring pods to replenishment stations; while the stock is below
     `stock_ceiling`, so do robots that no pick station needs. If the optimiser fails, its start rule
     makes the plan.
     """
@@ -86,7 +86,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
     # --- when the model is asked ----------------------------------------------------------------
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Record that another plan may now be better."""
+        """Record an event after which the model may be asked for a better plan."""
         view = self.view
         if self._expected is not None and trigger is Trigger.NEW_ORDER:
             self._expected.hear(subject)
@@ -103,7 +103,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
         return self._asked_s + self.parameters.buffer_s if self._wants_to_ask else inf
 
     def decide(self, consult: Consult) -> Iterator[Decision]:
-        """Plan if something has changed, carry out what is due, and assign tasks to robots."""
+        """Ask for a plan if needed, carry out what is due, and assign all other tasks by rules."""
         yield from self._give_slots()
         yield from self._ask()
         yield from self._give_slots()
@@ -138,7 +138,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             yield question
 
     def _neediest(self) -> list[PickStation]:
-        """Choose the stations to plan for: those with the least work under way, in their order."""
+        """Return the stations to plan for: those with the least work under way, by index."""
         stations = self.view.pick_stations
         most = self.parameters.stations
         if len(stations) <= most:
@@ -186,7 +186,7 @@ class PlanningControl(JointAllocation[PlanningParameters]):
     # --- what is left to rules ------------------------------------------------------------------
 
     def _go_on(self, robot: Robot, consult: Consult) -> Iterator[Decision]:
-        """Use a pod again that has been served, take it to its bundles, or park it."""
+        """Keep a pod at its station, take it to bundles that wait for it, or park it."""
         view, here = self.view, robot.station
         if here >= 0 and consult.serves(robot.pod, here):
             yield bring(view, robot, robot.pod, here)
@@ -203,6 +203,6 @@ class PlanningControl(JointAllocation[PlanningParameters]):
             yield Park(robot, place)
 
     def _waits(self, robot: Robot, station: PickStation) -> bool:
-        """Whether a pod waits for a slot about to be free, for an order that it serves alone."""
+        """Whether a slot is about to be free, and a waiting order needs only this robot's pod."""
         soon = any(order.unpicked_units == 0 for order in station.orders.values())
         return soon and self._plan.streams(robot.pod, station.index)

@@ -49,7 +49,7 @@ class ExpectedOrders:
     view
         The world.
     rng
-        Random stream that draws the orders.
+        Random generator with which orders are drawn.
     """
 
     def __init__(self, view: View, rng: np.random.Generator) -> None:

@@ -31,7 +31,7 @@ class Planned:
         Numbers of the first and the last visit that serve the item (the order or line), as counted
         when the plan was made.
     units
-        For each pod that serves the item, by index, the number of units that it serves.
+        Number of units that each pod supplies for the item, by index of the pod.
     begins_with
         The pod of the first visit that serves the item.
     """
@@ -44,7 +44,7 @@ class Planned:
 
     @property
     def sequence(self) -> tuple[int, int, tuple[int, int]]:
-        """Sort key: smaller values come first."""
+        """Sort key, by which items that are served earlier come first."""
         return self.first, self.last, self.item.key
 
 
@@ -70,7 +70,7 @@ class Plan:
         self._call: list[Call | None] = [None for _ in view.pick_stations]
 
     def take(self, solution: Mapping[str, Any], memo: Memo, call: Call | None) -> None:
-        """Adopt a solution as the plan of the stations that were part of the question."""
+        """Adopt a solution as the new plan for the stations that the question was about."""
         visits: dict[int, list[tuple[int, int]]] = {}
         served = zip(memo.lines, memo.order_of, solution["line_visit"].tolist(), strict=True)
         for line, number, visit in served:
@@ -105,7 +105,7 @@ class Plan:
             orders.sort(key=lambda one: one.sequence)
 
     def call(self, station: int) -> Call | None:
-        """Return the call that yielded a station's plan; None if the start rule made the plan."""
+        """Return the optimiser call that planned for a station; None if the start rule did."""
         return self._call[station]
 
     def keys_of(self, stations: Sequence[int]) -> set[tuple[int, int]]:
@@ -119,7 +119,7 @@ class Plan:
         return Splitting(self._view, self._split_orders, orders)
 
     def next_pod(self, station: int) -> int:
-        """Return the pod of the next visit that is still possible, or -1."""
+        """Return the first planned pod of a station that is still available, or -1."""
         pods = self.pods[station]
         while pods and not self._view.storage.is_at_hand[pods[0]]:
             pods.pop(0)
@@ -130,7 +130,7 @@ class Plan:
         """Yield assignments due now; the caller carries out each before requesting the next.
 
         An order (or line) is due if its first pod is under way. One slot is reserved for orders
-        that need no other pod than the one at the head of the queue.
+        (or lines) that need only the pod at the head of the queue.
         """
         waiting = self._orders[station.index]
         if not waiting or not station.active:
@@ -154,7 +154,7 @@ class Plan:
         return any(list(planned.units) == [pod] for planned in self._orders[station])
 
     def units(self, station: PickStation) -> int:
-        """Return the units that pods under way supply, also to planned orders without a slot."""
+        """Return the units that pods under way supply to the station's open and planned orders."""
         view, index = self._view, station.index
         coming = under_way(view, station)
         units = sum(len(task.picks) for task in station.tasks.values())
@@ -174,16 +174,16 @@ class Plan:
 def _only_hoped_for(
     visits: Mapping[int, Sequence[tuple[int, int]]], stations: Sequence[int], expected: int
 ) -> set[tuple[int, int]]:
-    """Return the visits that serve nothing but orders still to come, as station and number.
+    """Return the visits that serve only future orders, as pairs of station and number of the visit.
 
     Parameters
     ----------
     visits
-        By number of an order, the visits that serve it, with units.
+        Visits that serve each order, with the number of units, by number of the order.
     stations
         Station of each order.
     expected
-        Number of the first order that is still to come.
+        Number of the first future order.
     """
     needed, hoped = (
         {

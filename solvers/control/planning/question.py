@@ -48,8 +48,8 @@ def solve(question: Question) -> Answer:
     Returns
     -------
     Answer
-        `pods`: pods to be called to each of the S stations, in sequence, padded with -1 to V
-        visits, shape (S, V); `order_station` and `line_visit`: as in the model's `Plan`.
+        `pods`, shape (S, V): up to V pods to be called to each of the S stations, in sequence,
+        padded with -1; `order_station` and `line_visit`, as in the model's `Plan`.
     """
     data = question.data
     found = planning.solve(

@@ -40,8 +40,8 @@ class Memo:
     stations
         The pick stations for which the question asks for a plan.
     items
-        What each order index stands for: a waiting order, or, if that may be split, one of its
-        lines. None for open orders and for future ones.
+        What each order index stands for: a waiting order, or one line of a waiting order that may
+        be split. None for open orders and for future orders.
     expected
         Index of the first future order.
     lines, order_of
@@ -81,7 +81,7 @@ class _Rows:
         self.items.append(item)
 
     def expect(self, order: ExpectedOrder, split: bool, share: float) -> None:
-        """Add what may come, worth a share of what waits."""
+        """Add a future order, whose value is this share of the value of a waiting order."""
         for lines in [(line,) for line in order.lines] if split else [order.lines]:
             self._add(order, lines, NONE, NONE, share)
             self.items.append(None)
@@ -236,7 +236,7 @@ def _order_worth(
     orders: Sequence[Order | ExpectedOrder],
     is_open: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
-    """Return the value of closing orders, shape (O,), s: by waiting times and due times."""
+    """Return the value of completing each order, by waiting and due time, shape (O,), in s."""
     waited_s = view.now_s - np.array([order.created_s for order in orders])
     worth: NDArray[np.float64] = (
         given.order_s + given.age_reward * np.maximum(waited_s, 0.0) * ~is_open
@@ -255,7 +255,7 @@ def _cost(
     stations: Sequence[PickStation],
     may_come: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
-    """Return the robot time of a visit, there and back, minus its value, shape (P, S), s."""
+    """Return the robot time of a visit, there and back, minus its value, shape (P, S), in s."""
     at = view.storage.pod_waypoint
     cost = np.full((len(at), len(stations)), np.inf)
     uneven = given.balance * excess_s(view, stations) if given.balance else np.zeros(len(stations))

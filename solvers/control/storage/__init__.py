@@ -1,1 +1,1 @@
-"""PSA by models: assignment of several pods, prices of storage locations, or intervals of stay."""
+"""PSA by models: joint assignment of pods to places, prices of places, or choice of zones."""

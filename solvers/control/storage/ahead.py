@@ -29,10 +29,10 @@ P = TypeVar("P", bound=StorageParameters)
 class Ahead(PodStorageAssignment[P]):
     """Plans storage locations (places) for the pods that robots carry, before these are stored.
 
-    When a pod reaches a station, and at most once per `buffer_s`, the optimiser is asked for the
-    places of all pods that robots carry to stations or have to store now. Its plan replaces the
-    previous one. Pods for which no place is planned, or whose planned place is no longer empty, go
-    to the nearest empty place.
+    When a pod reaches a station, but at most once in `buffer_s` seconds, the optimiser is asked for
+    the places of all pods that robots carry to stations or have to store now. The new plan replaces
+    the previous one. Pods for which no place is planned, or whose planned place is no longer empty,
+    go to the nearest empty place.
     """
 
     subscriptions = frozenset({Trigger.POD_AT_STATION})
@@ -47,11 +47,11 @@ class Ahead(PodStorageAssignment[P]):
 
     @abstractmethod
     def question(self, robots: Sequence[Robot]) -> Ask[Any]:
-        """Ask where to store the pods of these robots; the memo of the question lists the pods."""
+        """Return the question of where to store these robots' pods, which `Ask.memo` lists."""
 
     @abstractmethod
     def places(self, call: Call) -> Sequence[int]:
-        """Return the place (waypoint) of each pod in an answer; -1 for none."""
+        """Return the place (waypoint) that an answer assigns to each pod of its question, or -1."""
 
     def next_event_s(self) -> float:
         """Return when a question may next be asked, in s; inf if an event has to occur first."""
@@ -67,7 +67,7 @@ class Ahead(PodStorageAssignment[P]):
             yield self.question(robots)
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Replace the plan by the answer, but leave out places that are no longer empty."""
+        """Replace the plan by the answer, without pods already stored or places no longer empty."""
         self._plan.clear()
         if call.solution is not None:
             carried = {robot.pod for robot in self.view.robots}
@@ -79,7 +79,7 @@ class Ahead(PodStorageAssignment[P]):
         return iter(())
 
     def place(self, robot: Robot) -> int | By[int]:
-        """Return the planned place of the pod, or else the nearest empty one."""
+        """Return the planned place of the pod if still empty, otherwise the nearest empty place."""
         planned = self._plan.pop(robot.pod, None)
         if planned is not None:
             place, call = planned

@@ -74,18 +74,19 @@ class PlacementParameters(StorageParameters):
 
 
 class PlacementControl(Ahead[PlacementParameters]):
-    """Weighs the trip to a storage location against later trips between it and the stations.
+    """Weighs the trip to a storage location against later trips between location and stations.
 
     All pods that robots carry to stations or have to store now are assigned to empty storage
-    locations jointly (linear assignment problem). Later trips are counted for as many visits as a
-    pod is expected to make within the horizon.
+    locations jointly (linear assignment problem). The time of a pod's later trips is the mean time
+    of a round trip to a pick station, times the number of visits that the pod is expected to make
+    within the horizon.
     """
 
     parameters_model = PlacementParameters
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.storage.placement",)
 
     def question(self, robots: Sequence[Robot]) -> Ask[Question]:
-        """State the assignment problem, with places that suffice for an optimal assignment."""
+        """Return the assignment problem, with places that suffice for an optimal assignment."""
         empty = self.view.storage.is_empty.nonzero()[0]
         pods = [robot.pod for robot in robots]
         travel_s = self.ways.storing_s(robots)[:, empty]

@@ -1,4 +1,4 @@
-"""PSA prices: stores pods where travel time, plus the price of the place for the stay, is least."""
+"""PSA prices: stores each pod where travel time plus the price of its stay is least."""
 
 from __future__ import annotations
 
@@ -67,13 +67,13 @@ class PricesParameters(StorageParameters):
 class PricesControl(PodStorageAssignment[PricesParameters]):
     """Computes prices of storage locations (places), and stores each pod where it costs least.
 
-    Places are divided into zones by distance from the pick stations and, every `period_s`, pods
-    into classes by expected visits. A convex program, which includes the delay by congestion,
-    determines how many pods of each class should be stored in each zone in a steady state. The
-    price of a place, a dual price of this program, is the robot time that one more place in its
-    zone would save per hour. A pod goes to the empty place with the least sum of the trips there
-    and away, the delay, and the price times the expected duration of its stay. Until the first
-    answer, and after a failure, pods go to the nearest empty place.
+    Places are divided into zones by distance from the pick stations. Every `period_s` seconds, pods
+    are divided into classes by expected visits, and a convex program determines how many pods of
+    each class should be stored in each zone in a steady state. It takes delays by congestion into
+    account. The price of a place, a dual price of this program, is the robot time that one more
+    place in its zone would save per hour. A pod goes to the empty place with the least cost: the
+    time of the trips there and away, plus the delay, plus the price times the expected stay. Until
+    the first answer, and after a failure, pods go to the nearest empty place.
     """
 
     parameters_model = PricesParameters
@@ -90,11 +90,11 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         self._asked_s = -inf
 
     def next_event_s(self) -> float:
-        """Return the time at which prices are next recomputed, in s."""
+        """Return the time at which prices will next be recomputed, in s."""
         return max(self._asked_s, 0.0) + self.parameters.period_s
 
     def decide(self) -> Iterator[Ask[Question]]:
-        """Ask for prices, unless they are recent or an answer is pending."""
+        """Ask for new prices, unless the last question is recent or its answer is pending."""
         if self.in_flight or self.view.now_s < self._asked_s + self.parameters.period_s:
             return
         self._asked_s = self.view.now_s
@@ -113,7 +113,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         return iter(())
 
     def place(self, robot: Robot) -> int | By[int]:
-        """Choose the cheapest empty place."""
+        """Return the empty place with the least cost for the robot's pod."""
         if self._prices is None:
             return self._heuristic.place(robot)
         prices, pod_class, call = self._prices
@@ -128,7 +128,7 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
         return By(self.least(values[0], self.view.storage.is_empty), call)
 
     def _steady_state(self, rate: NDArray[np.float64], pod_class: NDArray[np.int64]) -> Zones:
-        """State the problem: mean trips of the zones, mean visits of the classes."""
+        """Return the problem, with mean trip times of the zones and mean visits of the classes."""
         each_s = means(self._ways.home_s + self._ways.fetch_s, self._zone)
         classes, count = int(pod_class.max()) + 1, len(each_s)
         return Zones(

@@ -1,4 +1,4 @@
-"""PSA stays: chooses zones for returning pods by when they and stored pods will be fetched."""
+"""PSA stays: chooses zones for returning pods by the times at which pods will be fetched."""
 
 from __future__ import annotations
 
@@ -73,14 +73,14 @@ class StaysParameters(StorageParameters, SearchParameters):
 
 
 class StaysControl(Ahead[StaysParameters]):
-    """Chooses zones for returning pods by the times at which they and stored pods will be fetched.
+    """Chooses zones for returning pods by the times at which pods will be fetched.
 
     Storage locations (places) are divided into zones by distance from the pick stations. A
     returning pod is assumed to be fetched at the end of its expected stay, which is limited to the
     horizon. A stored pod whose expected stay is shorter than the horizon is assumed to leave its
     zone at the end of that stay; the other stored pods only occupy their places. An integer program
     chooses the zones so that no zone is ever overfull and robot time is least. Within its zone, a
-    returning pod takes the empty place nearest to the station at which it is served.
+    returning pod is stored at the empty place nearest to the station from which it returns.
     """
 
     parameters_model = StaysParameters
@@ -92,14 +92,14 @@ class StaysControl(Ahead[StaysParameters]):
         self._index = np.array(view.storage.place_index)
 
     def question(self, robots: Sequence[Robot]) -> Ask[Question]:
-        """State the problem of stays."""
+        """Return the problem of choosing zones for the stays of pods."""
         data = self._stays(robots)
         question = Question(data, len(robots), self.parameters.method, self.parameters.limits)
         sizes = {"pods": len(robots), "stays": len(data.begin_s), "zones": len(data.capacity)}
         return Ask(solve, question, sizes, [robot.pod for robot in robots])
 
     def places(self, call: Call) -> Sequence[int]:
-        """Assign pods, one by one, to the nearest empty place of their zone; -1 if none is left."""
+        """Return the nearest empty place in each pod's zone, one by one; -1 if none is left."""
         assert call.solution is not None
         storage = self.view.storage
         carriers = {robot.pod: robot for robot in self.view.robots if robot.pod >= 0}
@@ -116,9 +116,9 @@ class StaysControl(Ahead[StaysParameters]):
         return places
 
     def _stays(self, robots: Sequence[Robot]) -> Stays:
-        """Return the stays of returning pods, then of pods in stock that leave within the horizon.
+        """Return the stays of returning pods, then of stored pods that leave within the horizon.
 
-        Pods that stay longer reduce the places of their zone, as do robots on their way.
+        Places of pods that stay longer do not count as capacity, nor do places that are reserved.
         """
         view, horizon_s = self.view, self.parameters.horizon_s
         stay_s = expected_stay_h(self.foresight.visits_per_h, horizon_s / 3600.0) * 3600.0

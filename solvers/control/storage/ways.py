@@ -61,5 +61,5 @@ class Ways:
         return times
 
     def storing_s(self, robots: Sequence[Robot]) -> NDArray[np.float64]:
-        """Return loaded travel times from robots' waypoints to each place, shape (R, L), in s."""
+        """Return loaded travel times from robots' waypoints to the places, shape (R, L), in s."""
         return np.stack([self.store_s(robot.waypoint) for robot in robots])

@@ -1,1 +1,1 @@
-"""TA by models: assignment by travel, queues and due times, or whole routes of robots."""
+"""TA by models: assignment of robots to stations (dispatch), or routes of robots (routes)."""

@@ -1,4 +1,4 @@
-"""Base of TA controllers that ask an optimiser: when they ask, and a rule if there is no answer."""
+"""Base of TA controllers that ask an optimiser, with a rule for robots without an answer."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Asking(TaskAllocation[P]):
         return self._buffer.next_event_s
 
     def decide(self, consult: Consult) -> Iterator[Told]:
-        """When there is something to decide, ask the optimiser.
+        """Ask the optimiser if there is something to decide and the buffer time is over.
 
         With `rule_meanwhile`, let the rule decide for robots with a pod while an answer is pending.
         """

@@ -90,18 +90,18 @@ class DispatchParameters(CongestionParameters, TaskParameters):
 class DispatchControl(Asking[DispatchParameters]):
     """Assigns robots to stations; PPS chooses the pods that they bring.
 
-    There are two kinds of tasks. A carried pod can be taken to any station that it can serve.
-    A robot without a pod can bring one to a station with work. A station has as many tasks of this
-    kind as there are robots without a pod, but not more than it has open requests or waiting
-    bundles, and not more than the number of further robots that may come (`robots_per_station`).
-    With `matching`, the sum of travel time and weighted lateness of orders is minimised (linear
-    assignment). With `balance`, waiting behind other pods counts as well (minimum-cost flow). Tasks
-    that are not worth the trip are left out; a robot without a task stores its pod if it carries
-    one, and otherwise rests.
+    There are two kinds of tasks: to take a carried pod to a station that it can serve, and to bring
+    a pod from storage to a station with work. The number of tasks of the second kind at a station
+    is the least of three numbers: the robots without a pod, the open requests or waiting bundles of
+    the station, and the further robots that may come (`robots_per_station`). With `matching`, the
+    sum of travel time and weighted lateness of orders is minimised (linear assignment). With
+    `balance`, waiting behind other pods counts as well (minimum-cost flow). Tasks that are not
+    worth the trip are left out; a robot without a task stores its pod if it carries one, and
+    otherwise rests.
 
     As PPS chooses the pod only later, the time that a robot needs to bring a pod is estimated as
     the mean over all pods that the station could use. The delay that congestion is expected to
-    cause can be added to it (`congestion`).
+    cause can be added to this time (`congestion`).
     """
 
     parameters_model = DispatchParameters
@@ -114,7 +114,7 @@ class DispatchControl(Asking[DispatchParameters]):
         parameters.prepare(view)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
-        """State the problem of assigning robots to tasks."""
+        """Return the problem of assigning robots to tasks."""
         empty = [row for row, robot in enumerate(robots) if robot.pod < 0]
         station: list[int] = []
         own: list[bool] = []
@@ -177,7 +177,7 @@ class DispatchControl(Asking[DispatchParameters]):
     def _to_station(
         self, robots: Sequence[Robot], empty: list[int], number: int
     ) -> NDArray[np.float64]:
-        """Return the time until each robot has brought a pod, mean over pods; inf if impossible."""
+        """Return the time until each robot has brought a pod (mean over pods); inf if it cannot."""
         view, column = self.view, np.full(len(robots), np.inf)
         if not empty or not view.has_open_work(number):
             return column
@@ -212,7 +212,7 @@ class DispatchControl(Asking[DispatchParameters]):
         return len(target.waiting)
 
     def _pace(self, station: int) -> float:
-        """Return the factor on the service time of a pod: a picker may be slow, or tired."""
+        """Return the factor by which the current picker changes the service time of a pod."""
         stations = self.view.layout.pick_stations
         if self.view.staff is None or station >= len(stations):
             return 1.0

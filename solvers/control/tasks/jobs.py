@@ -1,4 +1,4 @@
-"""Jobs: pods that stations could use next; TA `routes` makes them the tasks of its routes."""
+"""Jobs: pods that stations could use next; they are the tasks of the controller TA routes."""
 
 from __future__ import annotations
 
@@ -66,9 +66,9 @@ def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) ->
     """Choose the next pods of every station, one pod after another.
 
     The next pod of a station is the one whose value minus trip time is largest; ties go to the pod
-    with the lowest number. The value of a pod counts, at pick stations, the units picked and the
-    orders completed beyond those of the pods chosen before; at replenishment stations, the bundles
-    stored. Each pod is chosen only once, for one station.
+    with the lowest number. At a pick station, the value counts the units picked and the orders
+    completed in addition to those of the pods chosen before. At a replenishment station, it counts
+    the bundles stored. Each pod is chosen only once, for one station.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) ->
 def _picks(
     view: View, station: PickStation, worth: Worth, count: int, taken: set[int]
 ) -> Iterator[Job]:
-    """Cover the requests of a pick station greedily."""
+    """Choose pods for the open requests of a pick station greedily."""
     pods = pick_candidates(view, view.robots[0], station)
     if not len(pods):
         return

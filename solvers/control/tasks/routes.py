@@ -46,8 +46,8 @@ class Question:
     method
         `lns`, `cp_sat`, `columns` or `greedy`.
     tasks, places
-        For CP-SAT: number of tasks considered as the next one after a pod is stored, and, for each
-        pair of such a pod and task, number of places considered for the pod.
+        For CP-SAT: number of tasks considered as the next task after the storing of each pod, and
+        number of places considered for each such pair of pod and next task.
     """
 
     data: TaskSequence
@@ -60,10 +60,10 @@ class Question:
 def solve(question: Question) -> Answer:
     """Plan routes; the answer has their first steps.
 
-    For each robot, these are the `place` where it stores the pod that it carries, and the first
-    `task` of its route; shape (R,), -1 for none. CP-SAT and column generation start from the
-    solution of cheapest insertion. Beyond the trips of this solution, CP-SAT considers only short
-    ones (`Question`).
+    For each robot, `place` is the index of the place where it stores the pod that it carries, and
+    `task` is the index of the first task of its route; both have the shape (R,), with -1 for none.
+    CP-SAT and column generation start from the solution of cheapest insertion. CP-SAT considers
+    only the trips of this solution and other short trips (see `Question`).
     """
     data = question.data
     found = sequence.solve(data, "lns" if question.method == "lns" else "greedy", question.limits)
@@ -138,10 +138,10 @@ class RoutesControl(Asking[RoutesParameters]):
 
     Routes are planned for the robots that need a task, are at rest, are storing a pod, or have a
     pod in service at a station. A task is to bring a pod to a station; for every station, there are
-    tasks for the pods that it could best use next. The pod of a task is due when its station has
-    finished the pods before it. The objective combines driving, lateness and the value of tasks
-    left undone. A pod is therefore stored where the trip to the place and on to the next pod is
-    short, which need not be the nearest place. A new plan is made whenever a robot needs a task.
+    tasks for the pods that it could best use next. The pod of a task is due when the station has
+    finished the previous pods. The objective combines driving, lateness and the value of tasks left
+    undone. A pod is therefore stored where the trip to the place and on to the next pod is short,
+    which need not be the nearest place. A new plan is made whenever a robot needs a task.
 
     A pod whose station has more work for it stays there. The routes determine pods and places, so
     PPS and PSA must be `dummy`. A robot with a pod but without a valid decision takes the pod to a
@@ -168,7 +168,7 @@ class RoutesControl(Asking[RoutesParameters]):
         return next((job.pod for job in self._jobs() if job.station == station), NONE)
 
     def question(self, robots: Sequence[Robot], consult: Consult) -> Ask[Question]:
-        """State the routing problem."""
+        """Return the routing problem."""
         given, view = self.parameters, self.view
         again = [
             r for r in robots if r.pod >= 0 and r.station >= 0 and consult.serves(r.pod, r.station)
@@ -275,7 +275,7 @@ class RoutesControl(Asking[RoutesParameters]):
         )
 
     def _ready_s(self, robot: Robot) -> float:
-        """Return when a robot can start, from now."""
+        """Return the time from now until a robot can start its route, in s."""
         view = self.view
         if _is_parking(robot):
             at = view.travel.robot_waypoint(robot.index)

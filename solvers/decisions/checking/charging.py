@@ -79,7 +79,7 @@ def _allowed(data: Plain, robot: int, at: int, first: int, count: int) -> None:
 
 
 def _levels(data: Plain, robot: int, at: int, first: int, count: int) -> tuple[float, float]:
-    """Return the lowest level that counts, and the one at the end."""
+    """Return the lowest level of a battery that counts, and its final level."""
     slots = data["wanted"].shape[1]
     level, drain = float(data["level"][robot]), float(data["drain"][robot])
     waits, here = bool(data["waits"][robot]), data["here"][robot] != NONE

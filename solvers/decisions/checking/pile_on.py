@@ -81,7 +81,7 @@ def _supply(
 ) -> int:
     """Check the units of each station and SKU; return open units that no pod covers.
 
-    What was open before may stay open; what is served now may not add to it.
+    Units that were open before may stay open, but the decision must not increase their number.
     """
     inbound = data["inbound"].tolist()
     total = 0
@@ -105,7 +105,7 @@ def _supply(
 
 
 def _calls(data: Plain, covered: list[int], called: list[int]) -> None:
-    """Check that pods may be called, and that each serves somebody."""
+    """Check that each called pod may be called, and that it serves an order."""
     inbound = data["inbound"].tolist()
     served: dict[int, set[int]] = {}
     for line, station in enumerate(covered):
@@ -136,7 +136,7 @@ def _cost_of_calls(data: Plain, called: list[int]) -> list[float]:
 
 
 def _cost_of_robots(data: Plain, called: list[int], robots: list[int]) -> list[float]:
-    """Check who fetches which pod."""
+    """Check which robot fetches which pod, and return the costs of fetching."""
     if data["fetch"] is None:
         require(
             all(robot < 0 for robot in robots),
@@ -161,7 +161,7 @@ def _cost_of_robots(data: Plain, called: list[int], robots: list[int]) -> list[f
 def _rewards(
     data: Plain, order: int, lines: list[int], slots: list[int], covered: list[int], prospect: int
 ) -> list[float]:
-    """What one order adds: rewards negative."""
+    """Return what one order adds to the objective; rewards are negative."""
     served = [line for line in lines if covered[line] >= 0]
     parts = [-data["weights.line"] * len(served)]
     if len(served) == len(lines) or prospect >= 0:

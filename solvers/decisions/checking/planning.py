@@ -40,7 +40,7 @@ def value(data: Plain, values: Plain) -> float:
 
 
 def _visits(data: Plain, new: list[list[int]]) -> list[list[int]]:
-    """Pods of each station's visits, those under way first."""
+    """Return the pods of each station's visits, those under way first."""
     visits: list[list[int]] = [[] for _ in data["slots"]]
     for pod, station in zip(data["coming"].tolist(), data["coming_to"].tolist(), strict=True):
         visits[station].append(pod)
@@ -65,7 +65,7 @@ def _cost(data: Plain, new: list[list[int]]) -> list[float]:
 
 
 def _order(data: Plain, order: int, at: int, visits: list[int]) -> None:
-    """An open order stays; of a waiting one all lines are served, or none."""
+    """Check that an open order keeps its station, and a waiting order is served whole or not."""
     station = int(data["order_station"][order])
     if station >= 0:
         require(
@@ -78,7 +78,7 @@ def _order(data: Plain, order: int, at: int, visits: list[int]) -> None:
 
 
 def _last(data: Plain, order: int, visits: list[int]) -> float:
-    """Visit in which an order closes; inf if a line is left, -1 if nothing ever comes."""
+    """Return the visit that completes an order; inf if a line is not served, -1 without visits."""
     if any(visit < 0 for visit in visits):
         return inf
     return max([int(data["order_until"][order]), *visits])
@@ -106,9 +106,10 @@ def _stock(data: Plain, visits: list[list[int]], at: list[int], visit_of: list[i
 def _slots(
     data: Plain, visits: list[list[int]], at: list[int], lines: list[list[int]], visit_of: list[int]
 ) -> None:
-    """From one visit to the next a station keeps one slot less than it has, at most.
+    """Check that between two visits, each station has fewer open orders than slots.
 
-    If more are open now than that and cannot close in the first visit, it may keep as many.
+    If as many orders as slots or more are open now and not completed in the first visit, their
+    number is the limit instead.
     """
     kept: dict[tuple[int, int], int] = {}
     open_now = [0] * len(visits)

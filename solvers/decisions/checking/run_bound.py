@@ -98,7 +98,7 @@ def _refill(data: Plain, given: dict[str, list[float]], slack: float) -> list[fl
 
 
 def _outside(data: Plain) -> float:
-    """Robot time that may lie outside the window: a way in, a service, a way out."""
+    """Return the robot time that may lie outside the window: a trip in, a service, a trip out."""
     picks = range(len(data["picking.inbound_s"]))
     fills = range(len(data["refill.inbound_s"]))
     ways_in = [float(data["picking.inbound_s"][s]) for s in picks]
@@ -114,7 +114,7 @@ def _outside(data: Plain) -> float:
 
 
 def _content(pods: list[int], visits: float) -> float:
-    """Units of the fullest pods, as many as there are visits."""
+    """Return the number of units in the fullest pods, counting one pod per visit."""
     total, left = 0.0, visits
     for units in sorted(pods, reverse=True):
         taken = min(1.0, max(0.0, left))

@@ -46,7 +46,7 @@ def value(data: Plain, values: Plain) -> float:
 
 
 def _route(data: Plain, robot: int, tasks: list[int], place: list[int], at: int) -> list[float]:
-    """Parts of the cost of one route."""
+    """Return the parts of the cost of one route."""
     parts: list[float] = []
     time = float(data["ready_s"][robot])
     if at >= 0:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return the robot time that the stays cost; when a pod leaves, its place is free at once."""
+    """Return the robot time of all stays; a place is free again as soon as its pod leaves."""
     zone = values["zone"].tolist()
     capacity = data["capacity"].tolist()
     within("zone", zone, 0, len(capacity))

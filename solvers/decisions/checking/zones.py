@@ -15,7 +15,7 @@ TOLERANCE = 1e-9
 
 
 def value(data: Plain, values: Plain) -> float:
-    """Return robot time per hour, in s: travel, and delays that grow with the traffic of a zone."""
+    """Return the robot time per hour, in s, of travel and of delays by the traffic in the zones."""
     standing = values["standing"].tolist()
     pods, places = data["pods"].tolist(), data["places"].tolist()
     rate = data["rate_per_h"].tolist()

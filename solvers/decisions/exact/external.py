@@ -1,8 +1,9 @@
 """External solvers as commands, which read a program and write a solution file.
 
-No external solver is required. A solver is given by its name, if its command is on the path, or as
-a command with the placeholders `{program}`, `{solution}` and `{seconds}`. The command is split into
-words as in a shell, but run without a shell. A solution counts only if `checking` accepts it.
+No external solver is required. A solver is specified by its name, if its command is on the search
+path (`PATH`), or by a command with the placeholders `{program}`, `{solution}` and `{seconds}`. The
+command is split into words as in a shell, but run without a shell. A solution counts only if
+`checking` accepts it.
 """
 
 from __future__ import annotations
@@ -62,12 +63,13 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
     seconds
         Time limit, in s of wall time.
     where
-        What error messages call the question, such as the path of its file. Default: its name.
+        Name of the question in error messages, such as the path of its file. Default:
+        `decision.name`.
 
     Returns
     -------
-    The answer, without a bound, as solution files contain none. Its `by` states the wall time of
-    building the program (`build_s`) and the total (`wall_s`).
+    The answer, without a bound, as solution files contain none. Its `by` states the wall time for
+    building and writing the program (`build_s`), and the total wall time (`wall_s`), in s.
 
     Raises
     ------

@@ -32,9 +32,9 @@ class Exact:
     program
         The program, to be minimised.
     names
-        Names of its columns.
+        Names of the program's columns.
     answer
-        Turns column values into the fields of an answer.
+        Function that converts column values to the fields of an answer.
     factor
         Factor by which the program's objective is multiplied to give the question's value.
     square
@@ -56,19 +56,21 @@ def exact(decision: Decision, where: str = "") -> Exact:
     decision
         The question.
     where
-        What error messages call the question, such as the path of its file. Default: its name.
+        Name of the question in error messages, such as the path of its file. Default:
+        `decision.name`.
 
     Raises
     ------
     InputError
-        If the question is infeasible in a way that the program cannot express.
+        If the model rejects the data, or if a question of the family `sequencing` needs a SKU that
+        no pod holds.
     """
     made: Exact = _STATED[decision.family](model_data(decision, where), where or decision.name)
     return made
 
 
 def _of(family: str, stated: Formulation[Any]) -> Exact:
-    """Take over a program of the models."""
+    """Convert a program of the models to an `Exact`."""
     names = Names(stated.program.columns)
     stated.names(names)
     return Exact(stated.program, names, lambda x: plain_values(family, stated.decode(x)))

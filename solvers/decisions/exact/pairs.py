@@ -23,7 +23,7 @@ Stated = tuple[LinearProgram, Names, Callable[[Reals], Plain]]
 
 
 def placement(data: Placement) -> Stated:
-    """Assign one place to each pod, and at most one pod to each place."""
+    """Return the program that assigns one place to each pod, and at most one pod to each place."""
     cost = data.cost_s
     pods, places = cost.shape
     allowed = np.isfinite(cost)
@@ -39,14 +39,14 @@ def placement(data: Placement) -> Stated:
 
 
 def matching(data: Matching) -> Stated:
-    """Assign at most one robot to each task, and at most one task to each robot."""
+    """Return the program that assigns at most one robot per task, and one task per robot."""
     builder = ProgramBuilder()
     x, left = _robots(builder, data)
     return _named(builder, x, left)
 
 
 def balance(data: Balance) -> Stated:
-    """Matching with costs of waiting.
+    """Return the program of `matching` with additional costs of waiting in queues.
 
     The k-th robot sent to a station waits for the pods already there or on their way, and for the
     k - 1 robots sent before it.
@@ -93,7 +93,11 @@ def _named(builder: ProgramBuilder, x: NDArray[np.int64], left: NDArray[np.int64
 
 
 def zones(data: Zones) -> tuple[LinearProgram, Names, Callable[[Reals], Plain], Reals]:
-    """Distribute pods over zones; the cost includes the square of each zone's traffic."""
+    """Return the program that distributes pods over zones.
+
+    The last returned value contains the cost coefficients of the squares of the columns, as the
+    cost includes the square of each zone's traffic.
+    """
     classes, count = data.visit_s.shape
     builder = ProgramBuilder()
     rate = data.rate_per_h[:, np.newaxis]

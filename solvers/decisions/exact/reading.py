@@ -31,9 +31,9 @@ _NAME_ALONE = re.compile(r"^(\s*\d+ \S+)\n", re.MULTILINE)
 def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
     """Read the value of each column from a solution file.
 
-    Supported are files whose lines contain a name followed by a value (HiGHS, SCIP, Gurobi, CBC),
-    and the XML of CPLEX. A column that the file does not name gets the value nearest to 0 within
-    its bounds.
+    The file consists of lines that contain a name followed by a value (HiGHS, SCIP, Gurobi, CBC),
+    or is an XML file of CPLEX. A column that the file does not name gets the value nearest to 0
+    within its bounds.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def answer_of(decision: Decision, stated: Exact, path: Path, by: dict[str, objec
     Raises
     ------
     InputError
-        If the file contains no solution, or an infeasible one.
+        If the file contains no solution, or an infeasible solution.
     """
     values = stated.answer(read_columns(stated, path))
     try:

@@ -9,7 +9,9 @@ station (o = R + u, for R robots). The columns state
 - `leave`: whether task t is left undone;
 - `arrive`, `late`: when the pod of task t arrives at its station, and how late it is.
 
-If the owner is a task u, a large constant M links the arrivals of its pod and of the next one:
+If a robot does task t after task u and stores the pod of u at place l in between, the pod of t
+arrives only after the robot has finished task u and made the trips. M is a large constant, and
+service, store, fetch and bring are fields of `TaskSequence` (without the ending `_s`):
 
 .. math::
 
@@ -37,7 +39,7 @@ if TYPE_CHECKING:
 def routes(
     data: TaskSequence,
 ) -> tuple[LinearProgram, Names, Callable[[NDArray[np.float64]], Plain]]:
-    """Return the program, its column names, and a function that turns column values into an answer.
+    """Return the program, its column names, and a function from column values to an answer.
 
     Parameters
     ----------
@@ -132,7 +134,7 @@ def routes(
 
 
 def _horizon(data: TaskSequence, reach: NDArray[np.float64], drive: NDArray[np.float64]) -> float:
-    """A time by which any sensible plan is over: everything by one robot, each at its longest."""
+    """Return a time by which any sensible plan ends, even if one robot does all tasks."""
     longest = float(max(reach.max(initial=0.0), drive.max(initial=0.0)))
     waits = float(data.ready_s.max(initial=0.0) + data.earliest_s.max(initial=0.0))
     return waits + data.tasks * longest + float(data.service_s.sum()) + longest

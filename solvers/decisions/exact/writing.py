@@ -43,7 +43,7 @@ def write_program(stated: Exact, path: Path) -> None:
 
 
 def write_map(decision: Decision, stated: Exact, path: Path) -> None:
-    """Write a file that states for each column which decision it is (`rmfs-decision-map/1`).
+    """Write a file that states which decision each column represents (`rmfs-decision-map/1`).
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def _sides(stated: Exact) -> Iterator[tuple[str, str, float, int]]:
 
 
 def _number(value: float) -> str:
-    """The shortest text that reads back as the same double; whole numbers without a point."""
+    """Return the shortest text that reads back as the same double; integers without a point."""
     return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(float(value))
 
 
@@ -133,7 +133,7 @@ def _mps(stated: Exact, name: str) -> Iterator[str]:
 
 
 def _quadratic(stated: Exact) -> Iterator[str]:
-    """Half of x'Qx is added to the cost: twice the cost of a square stands on the diagonal."""
+    """Yield the matrix Q of the cost x'Qx / 2: twice the costs of squares, on the diagonal."""
     if stated.square.any():
         yield "QUADOBJ"
         for column in np.flatnonzero(stated.square).tolist():

@@ -1,6 +1,6 @@
-"""The library of decisions: drawing its questions, best known results, and improving them.
+"""The library of decisions: questions drawn from runs, with their best known answers and bounds.
 
-- `drawing`: draws its questions from runs;
-- `table`: holds best known values and bounds, and how they were found;
-- `improving`: searches for better ones.
+- `drawing` draws the questions.
+- `table` holds the best known values and bounds, and states how they were found.
+- `improving` searches for better values and bounds.
 """

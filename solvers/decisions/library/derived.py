@@ -58,7 +58,7 @@ def derived(family: str, size: str, asked: Iterable[Decision]) -> Iterator[Decis
 
 
 def _tables(one: Decision) -> tuple[np.ndarray, np.ndarray]:
-    """Units of orders, and stock of pods at hand, per SKU wanted; orders that can be served."""
+    """Return the units of orders that can be served, and the stock of available pods, by SKU."""
     data = one.data
     units = np.zeros((one.sizes["O"], one.sizes["K"]), np.int64)
     np.add.at(units, (data["line_order"], data["line_sku"]), data["line_units"])

@@ -3,9 +3,9 @@
 For each family, size of site, kind of demand and seed, a run is simulated with a set of controllers
 that asks questions of the family; if there are two such sets, the runs alternate between them. The
 simulated time is divided into thirds: early, middle, late. Of the answered questions of each third,
-only the largest tenth is considered (by number of array entries), because many questions concern
-only one robot or one slot; one question is drawn from this tenth, all with the same probability.
-`derived` makes the questions of those families of which no controller asks any.
+one is drawn uniformly at random from the largest tenth (by number of array entries), because many
+questions concern only one robot or one slot. `derived` makes the questions of families for which no
+controller asks any.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def draw(family: str, size: str) -> Iterator[Decision]:
     Parameters
     ----------
     family
-        Its name in `SCHEMAS`.
+        Name of the family, a key of `SCHEMAS`.
     size
         A key of `SITES`.
 
@@ -144,7 +144,7 @@ def draw(family: str, size: str) -> Iterator[Decision]:
 
 @lru_cache(maxsize=1)
 def _pile_on_drawn(size: str) -> tuple[Decision, ...]:
-    """Draw once what several families are made of."""
+    """Draw the pile-on questions of a size, from which those of other families are derived."""
     return tuple(_drawn("pile_on", size))
 
 

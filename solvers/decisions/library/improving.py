@@ -93,7 +93,8 @@ def improve(
     families, sizes
         Families and sizes of the questions. Default: all.
     tell
-        Called with a line about each question after its searches, and about each failed search.
+        Function that is called with a line of text about each question after its searches, and
+        about each search that fails.
 
     Returns
     -------
@@ -119,7 +120,7 @@ def _urgency(row: Row) -> tuple[float, str, str]:
 
 
 def _wait(effort: Effort, until: float) -> bool:
-    """Wait for an idle machine; false if the time is over."""
+    """Wait until the load of the machine is low enough; return whether there is time left."""
     while os.getloadavg()[0] > effort.load and monotonic() < until:
         sleep(5.0)
     return monotonic() < until
@@ -165,7 +166,7 @@ def _tried(
 def _searches(
     decision: Decision, row: Row, effort: Effort, number: int
 ) -> Iterator[tuple[str, float]]:
-    """Yield methods and limits of a round; those without limits only in the first."""
+    """Yield methods and limits of a round; methods that ignore limits only in the first round."""
     for method in METHODS[decision.family]:
         if method in UNLIMITED and number:
             continue

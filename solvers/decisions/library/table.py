@@ -45,7 +45,7 @@ class Row:
     question
         Name of the question.
     family, size, load, moment
-        Its family, and from what it was drawn: the size of the site, the kind of demand, and the
+        Family of the question, and its origin: the size of the site, the kind of demand, and the
         part of the run (such as `early`).
     value, bound
         Best known value and bound; nan if there is none.
@@ -125,7 +125,7 @@ class Library:
     def enter(
         self, decision: Decision, found: Found | None, by: str, bound: float = math.nan
     ) -> list[str]:
-        """Enter an answer and a bound, each if it is better than the known one, and save the table.
+        """Enter an answer or a bound that is better than the known one, or both; save the table.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class Library:
 
         Returns
         -------
-        What was improved: `value`, `bound`, both or nothing.
+        List of what was improved: `value`, `bound`, both or neither.
 
         Raises
         ------
@@ -180,7 +180,7 @@ class Library:
 
     @contextmanager
     def _alone(self) -> Iterator[None]:
-        """Keep other processes from entering meanwhile, and learn what they have entered."""
+        """Lock the table against other processes, and read the rows that they have entered."""
         with (self.folder / LOCK).open("w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             for row in _rows(self.folder / TABLE):

@@ -1,12 +1,14 @@
-"""One adapter per solver, which takes a `LinearProgram` and `Limits` and returns an `Outcome`.
+"""Back ends: adapters to solvers of integer programs, relaxations, assignment and flow problems.
 
-The adapters of integer programs share one signature, so any of them can solve a model. All are
-deterministic: they use one thread, a fixed seed and limits in counted work. Running out of
-wall-clock time can only raise an error, never change a result.
+`highs` and `cp_sat` solve integer programs. They have the same signature: each takes a
+`LinearProgram` and `Limits` and returns an `Outcome`, so either can solve a model whose columns are
+all integer. `clarabel` solves linear relaxations. All back ends are deterministic: they use one
+thread, a given seed and limits in counted work. Running out of wall-clock time can only raise an
+error, never change a result.
 
-`assignment` and `flow` solve linear assignment and minimum-cost flow. Both problems are polynomial,
-so they are solved to the end without a limit. Optimality is proven by dual potentials that are
-computed here and do not rely on the solver.
+`assignment` and `flow` solve linear assignment and minimum-cost flow problems. Both kinds of
+problem are solvable in polynomial time, so no limits are needed. Optimality is proven by dual
+values that are computed here, independently of the solver.
 """
 
 from rmfs.solvers.models.backends.outcome import Outcome as Outcome

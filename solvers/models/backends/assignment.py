@@ -1,13 +1,13 @@
-r"""The linear assignment problem on a cost table with at least as many columns as rows.
+r"""The linear assignment problem for a cost table with at least as many columns as rows.
 
 .. math::
 
     \min \sum_{ij} c_{ij} x_{ij}, \quad \sum_j x_{ij} = 1, \quad \sum_i x_{ij} \le 1
 
 Dual: :math:`\max \sum_i u_i + \sum_j v_j` subject to :math:`u_i + v_j \le c_{ij}`,
-:math:`v \le 0` (Burkard, Dell'Amico, Martello: Assignment Problems, chapter 4). Every
-:math:`v \le 0` gives a bound, with :math:`u_i = \min_j (c_{ij} - v_j)`. The v derived from an
-optimal assignment gives the best bound.
+:math:`v \le 0` (Burkard, Dell'Amico, Martello: Assignment Problems, chapter 4). With
+:math:`u_i = \min_j (c_{ij} - v_j)`, every :math:`v \le 0` gives a lower bound. If v is derived from
+an optimal assignment, the bound equals the minimum cost.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Assigned(NamedTuple):
     bound
         Proven lower bound on the cost of every assignment.
     work
-        Deterministic work: the number of entries of the cost table, plus the number of entries that
-        were compared in the search for the bound, over all its rounds.
+        Deterministic work: the number of entries of the cost table, plus the number of comparisons
+        made to compute the bound.
     """
 
     column: NDArray[np.int64]
@@ -56,13 +56,13 @@ def assign(cost: NDArray[np.float64], solver: Solver = "scipy") -> Assigned | No
     Parameters
     ----------
     cost
-        Shape (M, N); +inf forbids a pair.
+        Cost of each pair of row and column, shape (M, N); +inf forbids a pair.
     solver
-        Algorithm to use. Default: SciPy.
+        Algorithm: `scipy` or `min_cost_flow`. Default `scipy`.
 
     Returns
     -------
-    The best assignment, or None if there is no assignment without a forbidden pair.
+    An optimal assignment, or None if every assignment contains a forbidden pair.
     """
     rows, columns = cost.shape
     if rows > columns:
@@ -87,18 +87,18 @@ def solve_by_assignment(
     Parameters
     ----------
     table
-        Function that returns the cost table; its time counts as building time.
+        Function that returns the cost table; the time it takes counts as building time.
     read
-        Function that turns the column of each row into the model's values.
+        Function that converts the array of the columns assigned to the rows to the model's values.
     objective
         Objective function of the model.
     solver
-        Algorithm to use.
+        Algorithm, as for `assign`.
 
     Returns
     -------
-    The optimal values, or status INFEASIBLE if there is no assignment; the work is then the number
-    of entries of the table, otherwise that of `Assigned`.
+    The optimal values, with the work of `Assigned`. If there is no assignment, the status is
+    INFEASIBLE, and the work is the number of entries of the cost table.
     """
     began = perf_counter()
     cost = table()
@@ -118,18 +118,17 @@ def solve_by_assignment(
 def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
     """Repeatedly assign the cheapest pair of a row and a column that are both still free.
 
-    Of equally cheap pairs, the one with the lowest row is taken, then the one with the lowest
-    column.
+    Among equally cheap pairs, the lowest row index takes precedence, then the lowest column index.
 
     Parameters
     ----------
     cost
-        Shape (M, N); +inf forbids a pair.
+        Cost of each pair of row and column, shape (M, N); +inf forbids a pair.
 
     Returns
     -------
-    Column of each row; None if a row remains for which every free column is forbidden, which can
-    happen even if an assignment exists.
+    Column of each row, shape (M,). None if some row is left without an allowed free column; this
+    can happen even if an assignment exists.
     """
     rows, columns = cost.shape
     column = np.full(rows, -1, np.int64)
@@ -151,20 +150,21 @@ def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
 def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> float:
     """Return a lower bound on the cost of every assignment, derived from a given assignment.
 
-    The price v of an assigned column is the length of the shortest alternating path that ends
-    there; it is 0 or negative (Bellman-Ford over the rows). The price of any other column is 0. The
-    bound is valid for any given assignment, and equals the minimum cost if that one is optimal.
+    The price v of an assigned column is the length of the shortest alternating path that ends at
+    this column, computed by the Bellman-Ford algorithm; it is 0 or negative. All other columns have
+    the price 0. The bound is valid for any given assignment. If the given assignment is optimal,
+    the bound equals the minimum cost (up to rounding).
 
     Parameters
     ----------
     cost
-        Shape (M, N); +inf forbids a pair.
+        Cost of each pair of row and column, shape (M, N); +inf forbids a pair.
     column
-        Column of each row, shape (M,).
+        Column of each row in the given assignment, shape (M,).
 
     Returns
     -------
-    The value of the dual at these prices, rounded down.
+    The dual objective at these prices, lowered by an allowance for rounding errors.
     """
     return _dual(cost, column)[0]
 
@@ -199,7 +199,7 @@ def _by_scipy(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
 
 
 def _by_flow(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
-    """One unit from every row through the columns to a sink."""
+    """Solve by a flow of one unit from every row through a column to a sink."""
     rows, columns = cost.shape
     row, column = np.nonzero(np.isfinite(cost))
     sink = rows + columns

@@ -36,7 +36,7 @@ class Backend(Protocol):
 
 @dataclass(frozen=True)
 class Formulation(Generic[V]):
-    """A problem as an integer program.
+    """A problem formulated as an integer program.
 
     Attributes
     ----------
@@ -47,9 +47,11 @@ class Formulation(Generic[V]):
     decode
         Function that turns column values into the model's values.
     objective, violations
-        Functions that give the objective and the violated constraints of the model's values.
+        Functions that return the objective of the model's values, and the constraints that they
+        violate.
     names
         Function that enters the name and meaning of each column in the `Names` passed to it.
+        Default: enters nothing.
     """
 
     program: LinearProgram
@@ -75,16 +77,16 @@ def solve_by(
     backend
         The solver.
     formulate
-        Function that formulates the program; its time counts as building time.
+        Function that formulates the program; the time it takes counts as building time.
     limits, seed
-        As for the back end.
+        Passed to the back end.
     start
         Feasible values to start from, or None.
 
     Returns
     -------
-    The solver's solution; if it is worse than the start, or there is none, its values are replaced
-    by the start.
+    The solver's solution. If the solver finds no values, or values worse than the start, the start
+    takes their place.
 
     Raises
     ------
@@ -105,12 +107,14 @@ def solve_by(
 
 
 def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
-    """Return the result of a search, with the start as its values if it has none or worse ones.
+    """Return the result of a minimisation, with values that are no worse than the start.
+
+    The start replaces the values if the search found none, or if those found are worse.
 
     Parameters
     ----------
     found
-        Result of the search for a minimum.
+        Result of the search.
     start
         Feasible values.
     value
@@ -123,7 +127,7 @@ def at_least(found: Solution[V], start: V, value: float) -> Solution[V]:
 
 
 def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) -> Outcome:
-    """Solve the linear relaxation with HiGHS; its bound is valid for the integer program.
+    """Solve the linear relaxation with HiGHS; the bound is also valid for the integer program.
 
     Parameters
     ----------
@@ -139,14 +143,15 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) 
 
 
 def with_relaxed_bound(backend: Backend) -> Backend:
-    """Wrap a back end: if a limit ends its search, the bound of the linear relaxation is computed.
+    """Return a back end that adds the bound of the linear relaxation if a limit ends its search.
 
-    The better one of this bound and the back end's own is then reported.
+    The outcome then contains the larger of this bound and the solver's own bound. The work that
+    it states does not include the work for the relaxation.
 
     Parameters
     ----------
     backend
-        The solver. The work reported is the solver's alone, without that for the relaxation.
+        The solver.
     """
 
     def solve(

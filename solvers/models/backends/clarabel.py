@@ -3,8 +3,8 @@
 A relaxation is compiled for a *pattern*: the positions of the nonzeros of the matrix, and which
 rows have lower and upper bounds. Every number (costs, coefficients, bounds) is a `cvxpy.Parameter`,
 so further programs with the same pattern are solved without compiling (disciplined parametrised
-programming). Interior-point duals are inexact; `safe_bound` turns them into a bound that is valid
-however inexact they are.
+programming). Interior-point duals are inexact; `safe_bound` computes a bound from them that is
+valid despite their errors.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ _DEFAULT_ITERATIONS = 200
 
 
 class LinearRelaxation:
-    """The compiled relaxation of all programs that share a pattern.
+    """A compiled linear relaxation, to be solved for any program with the same pattern.
 
     Parameters
     ----------
     program
-        Any program with the pattern.
+        A program with the pattern (see the module); its numbers are not used.
     """
 
     def __init__(self, program: LinearProgram) -> None:
@@ -59,11 +59,11 @@ class LinearRelaxation:
         self._problem = cp.Problem(cp.Minimize(self._cost @ self._x), self._constraints)
 
     def fits(self, program: LinearProgram) -> bool:
-        """Whether a program has the pattern this relaxation was compiled for."""
+        """Return whether a program has the pattern for which this relaxation was compiled."""
         return self._pattern == _pattern(program)
 
     def solve(self, program: LinearProgram, limits: Limits = NO_LIMITS) -> Relaxation:
-        """Relax and solve a program.
+        """Solve the linear relaxation of a program.
 
         Parameters
         ----------
@@ -74,7 +74,7 @@ class LinearRelaxation:
 
         Returns
         -------
-        The solution of the relaxation, and a bound that is valid whatever the final status.
+        The solution of the relaxation, with a bound that is valid even if the solver failed.
 
         Raises
         ------
@@ -142,7 +142,7 @@ class LinearRelaxation:
 
 
 def relax(program: LinearProgram, limits: Limits = NO_LIMITS) -> Relaxation:
-    """Relax and solve a program once.
+    """Compile and solve the linear relaxation of a single program.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS) -> Relaxation:
 
     Returns
     -------
-    The solution of the relaxation, and a bound as from `LinearRelaxation.solve`.
+    The solution of the relaxation, with a bound that is valid even if the solver failed.
     """
     began = time.perf_counter()
     relaxation = LinearRelaxation(program)
@@ -176,7 +176,7 @@ def _options(limits: Limits) -> dict[str, float]:
 
 
 def _pattern(program: LinearProgram) -> tuple[bytes, bytes, bytes, bytes, int]:
-    """What must agree for a compiled relaxation to be reused."""
+    """Return what two programs must have in common to share a compiled relaxation."""
     return (
         program.row_start.tobytes(),
         program.column.tobytes(),

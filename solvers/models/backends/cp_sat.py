@@ -1,12 +1,12 @@
-"""CP-SAT: integer programs, limited by deterministic time.
+"""Back end for integer programs: the solver CP-SAT, limited by deterministic time.
 
 One worker, a fixed seed and a limit in deterministic seconds (the solver's own measure of its work)
 make results repeatable, whatever the load of the machine. The model is written directly into the
 solver's protocol buffer, row by row from the compressed matrix, in a few microseconds per row.
 
-CP-SAT uses integers: costs are rounded *down* to multiples of 1/1024 (a power of two, so that
-scaling is exact). As all columns are non-negative, the minimum with rounded costs never exceeds the
-true minimum, so the solver's bound remains valid.
+CP-SAT needs integer costs. Fractional costs are rounded *down* to multiples of 1/1024 (a power of
+two, so that scaling is exact). As all columns are non-negative, the minimum with rounded costs
+never exceeds the true minimum, so the solver's bound remains valid.
 """
 
 from __future__ import annotations
@@ -46,10 +46,11 @@ def solve(
     Parameters
     ----------
     program
-        What to solve. All columns must be integer and non-negative; all coefficients and all finite
-        bounds, of columns and of rows, must be whole numbers. Costs may be fractions.
+        The program. All columns must be integer and non-negative. All coefficients and all finite
+        bounds of columns and rows must be whole numbers. Costs may be fractional.
     limits
-        ``deterministic_s`` limits the search; ``gap`` is relative. Default: to optimality.
+        ``deterministic_s`` limits the search, which also ends at the relative gap ``gap``.
+        Default: none, so that the search ends with a proven optimum.
     seed
         Seed of the solver. Default 0.
     start
@@ -67,7 +68,7 @@ def solve(
     ModelError
         If the program is not as described above, or a number is too large for the solver.
     WallGuardError
-        If the wall-clock guard ran out.
+        If the solver was stopped by `limits.wall_guard_s`.
     """
     began = time.perf_counter()
     if (answer := trivial(program, NAME)) is not None:
@@ -89,12 +90,12 @@ def solve(
 
 
 def configure(solver: cp_model.CpSolver, limits: Limits, seed: int) -> None:
-    """Set a solver to one worker, the given seed and the given limits.
+    """Configure a solver: one worker, the given seed and the given limits.
 
     Parameters
     ----------
     solver
-        The solver to set.
+        The solver to configure.
     limits
         Deterministic time, gap and wall-clock guard.
     seed
@@ -113,15 +114,15 @@ def configure(solver: cp_model.CpSolver, limits: Limits, seed: int) -> None:
 
 
 def run(solver: cp_model.CpSolver, model: cp_model.CpModel) -> CpSolverStatus:
-    """Solve a model in such a way that Ctrl-C ends the search.
+    """Solve a model; Ctrl-C ends the search.
 
-    Python handles signals in the main thread only, and not while that thread is in the solver. The
-    search therefore runs in a thread of its own.
+    Python handles signals only in the main thread, and not while the main thread is inside the
+    solver. If called from the main thread, this function therefore runs the search in another one.
 
     Parameters
     ----------
     solver
-        A solver that `configure` has set.
+        A solver configured by `configure`.
     model
         The model to solve.
 
@@ -142,7 +143,7 @@ def run(solver: cp_model.CpSolver, model: cp_model.CpModel) -> CpSolverStatus:
 
 
 def check_guard(solver: cp_model.CpSolver, status: CpSolverStatus, limits: Limits) -> None:
-    """Raise an error if the search was ended by the wall-clock guard, not by a deterministic limit.
+    """Raise an error if the wall-clock guard, not a deterministic limit, ended the search.
 
     Parameters
     ----------
@@ -156,7 +157,7 @@ def check_guard(solver: cp_model.CpSolver, status: CpSolverStatus, limits: Limit
     Raises
     ------
     WallGuardError
-        If the guard ran out before the search had ended.
+        If the wall-clock guard ended the search.
     """
     if limits.wall_guard_s is None or status in (cp_model.OPTIMAL, cp_model.INFEASIBLE):
         return
@@ -207,7 +208,7 @@ def _model(
 
 
 def _whole(field: str, values: NDArray[np.float64]) -> list[int]:
-    """Whole numbers of a float array; infinite ones become the solver's."""
+    """Return an array of floats as whole numbers; infinite values become the solver's limits."""
     finite = np.where(np.isfinite(values), values, np.sign(values) * _FAR)
     require(bool(np.all(np.abs(finite) <= _FAR)), field, f"CP-SAT counts to {_FAR:.1e} at most")
     require(bool(np.all(finite == np.rint(finite))), field, "CP-SAT needs whole numbers")
@@ -223,7 +224,7 @@ def _outcome(
     began: float,
     built: float,
 ) -> Outcome:
-    """Read the end of the run."""
+    """Return the outcome of the run."""
     statuses = {
         cp_model.OPTIMAL: Status.OPTIMAL,
         cp_model.FEASIBLE: Status.FEASIBLE,

@@ -5,14 +5,16 @@ r"""Minimum-cost flow with supplies on nodes and capacities on arcs.
     \min \sum_a c_a f_a, \quad 0 \le f_a \le q_a, \quad
     \sum_{a \text{ out of } v} f_a - \sum_{a \text{ into } v} f_a = b_v
 
-For any potentials :math:`\pi` (Ahuja, Magnanti, Orlin: Network Flows, section 9.4)
+Here :math:`f_a` is the flow on arc a, :math:`c_a` its cost per unit, :math:`q_a` the capacity of
+the arc, and :math:`b_v` the supply of node v. For any node potentials :math:`\pi`, a lower bound on
+the cost is (Ahuja, Magnanti, Orlin: Network Flows, section 9.4)
 
 .. math::
 
-    \sum_a q_a \min(0,\; c_a + \pi_{tail(a)} - \pi_{head(a)}) - \sum_v b_v \pi_v
+    \sum_a q_a \min(0,\; c_a + \pi_{tail(a)} - \pi_{head(a)}) - \sum_v b_v \pi_v.
 
-is a lower bound on the cost. With the shortest distances in the residual network of an optimal flow
-as potentials, the bound equals the cost of that flow.
+If the potentials are the shortest distances in the residual network of an optimal flow, the bound
+equals the cost of this flow.
 """
 
 from __future__ import annotations
@@ -41,14 +43,14 @@ class Network:
     Parameters
     ----------
     tail, head
-        Ends of each arc, shape (A,).
+        Start node and end node of each arc, shape (A,).
     capacity
-        Units an arc can carry, shape (A,).
+        Maximum number of units on each arc, shape (A,).
     cost
-        Cost per unit, shape (A,); any sign, finite.
+        Cost per unit on each arc, shape (A,); finite, may be negative.
     supply
-        Units that enter the network at each node (negative: that leave it), shape (V,); the sum is
-        0.
+        Units that enter the network at each node, shape (V,); negative if units leave it there.
+        The sum over all nodes must be 0.
     """
 
     tail: NDArray[np.int64]
@@ -68,7 +70,7 @@ class Flow(NamedTuple):
     bound
         Proven lower bound on the cost of every flow.
     work
-        Work of the back end, counted in arcs: the number of arcs of the network.
+        Deterministic work: the number of arcs of the network.
     """
 
     units: NDArray[np.int64]
@@ -124,7 +126,7 @@ def flow_bound(network: Network, potential: NDArray[np.float64]) -> float:
 
     Returns
     -------
-    The bound (the dual objective at these potentials), rounded down.
+    The dual objective at these potentials, lowered by an allowance for rounding errors.
     """
     tail, head = potential[network.tail], potential[network.head]
     saved = np.minimum(0.0, network.cost + tail - head) * network.capacity
@@ -137,7 +139,7 @@ def flow_bound(network: Network, potential: NDArray[np.float64]) -> float:
 def _distances(
     network: Network, units: NDArray[np.int64], whole: NDArray[np.int64]
 ) -> NDArray[np.float64]:
-    """Return shortest distances from anywhere in the residual network (Bellman and Ford)."""
+    """Return each node's shortest distance in the residual network from any node (Bellman-Ford)."""
     forward, backward = units < network.capacity, units > 0
     tail = np.concatenate([network.tail[forward], network.head[backward]])
     head = np.concatenate([network.head[forward], network.tail[backward]])

@@ -1,8 +1,8 @@
-"""HiGHS: linear and mixed-integer programs, limited by nodes or iterations.
+"""Back end for linear and mixed-integer programs: the solver HiGHS, limited by nodes or iterations.
 
-On one thread, HiGHS is deterministic. A mixed-integer program is limited by its number of nodes; as
-the work per node varies, `Outcome.work` counts simplex iterations instead. The bound that `solve`
-returns comes from floating-point LPs, so it is lowered by the relative tolerance
+On one thread, HiGHS is deterministic. The limit of a mixed-integer program is a number of
+branch-and-bound nodes; as the work per node varies, `Outcome.work` counts simplex iterations. The
+bound that `solve` returns comes from floating-point LPs, so it is lowered by the relative tolerance
 `NUMERICAL_TOLERANCE`.
 """
 
@@ -37,12 +37,13 @@ def solve(
     Parameters
     ----------
     program
-        What to solve.
+        The program.
     limits
-        ``nodes`` limits branch and bound, ``iterations`` the simplex method on a pure LP; ``gap``
-        is relative. Default: to optimality.
+        ``nodes`` limits branch and bound, which also ends at the relative gap ``gap``;
+        ``iterations`` limits the simplex method on a pure LP. Default: none, so that the solver
+        ends with a proven optimum.
     seed
-        Seed of the solver's tie-breaks. Default 0.
+        Random seed of the solver. Default 0.
     start
         A feasible point to start from, one value per column. Default: none.
 
@@ -53,7 +54,7 @@ def solve(
     Raises
     ------
     WallGuardError
-        If the wall-clock guard ran out.
+        If the solver was stopped by `limits.wall_guard_s`.
     """
     began = time.perf_counter()
     if (answer := trivial(program, NAME)) is not None:
@@ -83,7 +84,7 @@ def relax(
         ``iterations`` limits the simplex method. Default: none.
     interior
         Whether to use the interior-point method instead of the simplex method. With 10,000 columns
-        or more, it takes a fraction of the time; the bound is equally safe. Default: no.
+        or more, the interior-point method takes a fraction of the time. Default: no.
 
     Returns
     -------
@@ -92,7 +93,7 @@ def relax(
     Raises
     ------
     WallGuardError
-        If the wall-clock guard ran out.
+        If the solver was stopped by `limits.wall_guard_s`.
     """
     began = time.perf_counter()
     relaxed = replace(program, integer=np.zeros(program.columns, dtype=np.bool_))
@@ -165,7 +166,7 @@ def _lp(program: LinearProgram) -> highspy.HighsLp:
 
 
 def _outcome(program: LinearProgram, solver: highspy.Highs, began: float, built: float) -> Outcome:
-    """Read the end of the run."""
+    """Return the outcome of the run."""
     model_status, info = solver.getModelStatus(), solver.getInfo()
     if model_status == highspy.HighsModelStatus.kTimeLimit:
         raise WallGuardError(f"HiGHS was stopped after {time.perf_counter() - built:.1f} s")

@@ -28,7 +28,7 @@ class Outcome:
     x
         Value of each column; None if no feasible point was found.
     bound
-        Proven lower bound of the objective, offset included; -inf if none.
+        Proven lower bound on the objective, including the offset; -inf if there is none.
     status
         Final status.
     backend
@@ -57,7 +57,7 @@ class Outcome:
         *,
         build_s: float = 0.0,
     ) -> Solution[V]:
-        """Return the model's solution, with the objective recomputed from its values.
+        """Decode the outcome to a solution of the model, and recompute the objective.
 
         Parameters
         ----------
@@ -100,9 +100,10 @@ class Relaxation:
         Dual value of each row, positive where the row's lower bound is binding; zeros if the solver
         gave none.
     bound
-        Lower bound on the objective of the relaxation, and so of the integer program, rounded down.
+        Lower bound on the objective of the relaxation, and so of the integer program. It is lowered
+        by an allowance for rounding errors.
     work
-        Iterations of the back end.
+        Number of iterations of the solver.
     build_s, wall_s
         Wall-clock seconds for passing the program to the solver (compilation, if any, included),
         and for the whole call.
@@ -117,16 +118,16 @@ class Relaxation:
 
 
 def trivial(program: LinearProgram, backend: str) -> Outcome | None:
-    """Solve a program that has no columns, without calling the solver.
+    """Return the outcome of a program that has no columns, without calling the solver.
 
-    Solvers differ in how they treat such programs.
+    This avoids differences between solvers in the treatment of such programs.
 
     Parameters
     ----------
     program
         The program.
     backend
-        Name of the back end that is to appear in the outcome.
+        Name of the back end, to be stored in the outcome.
 
     Returns
     -------

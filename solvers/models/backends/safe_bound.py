@@ -1,4 +1,4 @@
-"""A lower bound that is valid for any multipliers, however inexact.
+"""A lower bound computed from row multipliers, valid even if the multipliers are inexact.
 
 For a program ``min c·x, row_lower <= A x <= row_upper, lower <= x <= upper`` and any row
 multipliers y, weak duality over the box gives
@@ -7,9 +7,9 @@ multipliers y, weak duality over the box gives
                                    + sum_j min(r_j lower_j, r_j upper_j),   r = c - A'y
 
 A multiplier whose sign refers to an absent (infinite) row bound is set to 0 first, which makes the
-dual feasible. The remaining error is rounding; an a-priori bound on the rounding error of the sums
-and products is subtracted. (Neumaier and Shcherbina 2004, Safe bounds in linear and mixed-integer
-linear programming, Math. Program. 99.)
+dual feasible. An a-priori bound on the rounding errors of the sums and products is subtracted from
+the result. (Neumaier and Shcherbina 2004, Safe bounds in linear and mixed-integer linear
+programming, Math. Program. 99.)
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ def safe_bound(program: LinearProgram, multipliers: NDArray[np.float64]) -> floa
     Parameters
     ----------
     program
-        The program. Integrality is ignored, so the bound holds with and without it.
+        The program. The bound is valid for this program and for its linear relaxation.
     multipliers
         Multiplier of each row, positive where the row's lower bound is binding. Any values give a
-        valid bound; those of the dual solution give a tight one.
+        valid bound; optimal dual values give a tight one.
 
     Returns
     -------
-    The bound, offset included, rounded down.
+    The bound, including the offset, lowered by an allowance for rounding errors.
     """
     y = np.where(np.isfinite(multipliers), multipliers, 0.0)
     y = np.where((y > 0) & np.isinf(program.row_lower), 0.0, y)

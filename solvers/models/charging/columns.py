@@ -1,4 +1,4 @@
-"""All possible stays of each robot, one row per stay."""
+"""All possible stays of each robot at charging or swapping places, one row per stay."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class Columns:
         Robot, group of places, first time slot and number of time slots of each stay, sorted by
         robot, shape (N,). The first row of each robot means "no stay".
     cost_s
-        Cost of each stay, excluding the cost of missing robots, shape (N,).
+        Cost of each stay, in s, excluding the cost of missing robots, shape (N,).
     away, used
-        Whether the robot of each stay is away from work in each time slot, and whether it occupies
-        a place, shape (N, T).
+        Whether the robot of each stay is away from work (`away`), and whether it occupies a place
+        (`used`), in each time slot, shape (N, T).
     first
         First row of each robot, followed by N, shape (R + 1,).
     """
@@ -47,11 +47,11 @@ class Columns:
     first: Integers
 
     def plan(self, rows: Integers) -> ChargePlan:
-        """Return the plan in which each robot makes the stay in its row; `rows` has shape (R,)."""
+        """Return the plan in which robot r makes the stay of row `rows[r]`."""
         return ChargePlan(self.group[rows], self.begin[rows], self.length[rows])
 
     def rows(self, plan: ChargePlan) -> Integers:
-        """Return the row of the stay that each robot makes in a feasible plan, shape (R,)."""
+        """Return the row of each robot's stay in a feasible plan, shape (R,)."""
         found = [
             np.flatnonzero(
                 (self.group[low:high] == plan.group[robot])
@@ -67,7 +67,7 @@ class Columns:
 
 
 def columns(data: Charging) -> Columns:
-    """List all stays.
+    """Return all possible stays of all robots.
 
     Parameters
     ----------

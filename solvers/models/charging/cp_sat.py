@@ -16,7 +16,7 @@ def solve(
     seed: int = 0,
     start: ChargePlan | None = None,
 ) -> Solution[ChargePlan]:
-    """Find the stay of each robot by constraint programming.
+    """Find an optimal stay of each robot by constraint programming.
 
     Of the limits, `deterministic_s` and `gap` apply.
     """

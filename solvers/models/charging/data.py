@@ -13,14 +13,14 @@ places), its first time slot b and its number n of time slots.
 :math:`end_r` and :math:`low_r` are the final and the lowest battery level of robot r,
 :math:`way_{r g_r}` is the time of its drive back from its place (0 without a stay), :math:`slots_r`
 is its number of time slots away from work, :math:`away_t` is the number of robots away in time slot
-t, and R is the number of robots. The other symbols, except lost, are fields of `Charging` (without
-the ending `_s`).
+t, and R is the number of robots. The demand for robots is given as Q equally likely cases. The
+other symbols, except lost, are fields of `Charging` (without the ending `_s`).
 
-Missing robot time is weighed against energy: :math:`lost(l) = worth\,(1 - l - \kappa (l - l^2))` is
-the worth, in robot time, of the energy that a battery with final level l lacks; :math:`\kappa`
-makes energy worth more in an empty battery than in a full one. A battery is charged with constant
-power up to the level `taper_from`; above it, the power falls linearly with the level, to 0 in a
-full battery. A swap takes one time slot. The demand for robots is given as Q equally likely cases.
+:math:`lost(l) = worth\,(1 - l - \kappa (l - l^2))` is the worth, in robot time, of the energy that
+a battery with final level l lacks. If :math:`\kappa > 0`, energy is worth more in an empty battery
+than in a full one. A battery is charged with constant power up to the level `taper_from`. Above
+this level, the power falls linearly with the level, to 0 in a full battery. A swap takes one time
+slot.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ AWAY = -1
 
 @dataclass(frozen=True)
 class Charging:
-    r"""Robots, groups of places, and demand for robots.
+    r"""Input of the charging model: robots, groups of places, and demand for robots.
 
     Parameters
     ----------
@@ -54,16 +54,16 @@ class Charging:
         First time slot in which each robot may leave its work, shape (R,).
     waits
         Whether a robot is already on its way to a place, waits there or swaps its battery, shape
-        (R,). Until its stay is over (without a stay: in all time slots), such a robot is away from
-        work and its battery does not drain.
+        (R,). Such a robot is away from work, and its battery does not drain, from time slot 0 to
+        the end of its stay; if the plan contains no stay for the robot, in all time slots.
     here
         Group of the place where a robot is being charged, or `AWAY` if it is not being charged,
-        shape (R,). A robot that is being charged either leaves now or has a stay, which continues
-        there from time slot 0.
+        shape (R,). A robot that is being charged either leaves now, or has a stay that begins at
+        the same group in time slot 0.
     way_s
-        Time from each robot to a place of each group, shape (R, G), in s; +inf if the robot may not
-        go there. A stay begins with this drive, unless the robot is already there. The cost of a
-        stay includes the drive back, which takes the same time.
+        Driving time of each robot to a place of each group, shape (R, G), in s; +inf if the robot
+        may not use the group. A stay begins with this drive, unless the robot is already there.
+        The cost of a stay includes the drive back, which takes the same time.
     places
         Number of robots that each group can hold in each time slot, shape (G, T).
     gain
@@ -73,7 +73,8 @@ class Charging:
         Battery level after a swap at each group, shape (G,); a swap takes one time slot. 0: the
         group charges instead.
     wanted
-        Number of robots needed for work in each of Q cases and in each time slot, shape (Q, T).
+        Number of robots needed for work in each of Q equally likely cases and in each time slot,
+        shape (Q, T).
     slot_s
         Length of a time slot, positive, in s.
     worth_s
@@ -87,13 +88,14 @@ class Charging:
     least
         Level below which no battery should fall. Default 0.15.
     short_s
-        Penalty in s for a level below `least`, multiplied by the difference of the two levels.
+        Penalty, in s, per unit by which the lowest level of a robot's battery falls below `least`.
         Default 36000.
     idle
         Cost of a time slot away from work if the robot is not needed, as a share of the cost if it
         is needed, from 0 to 1. Default 0.
     curve
-        :math:`\kappa` in the objective of this module, from 0 to 1. Default 0.2.
+        :math:`\kappa` in the objective (see the module), from 0 to 1; with 0, energy is worth the
+        same at every battery level. Default 0.2.
 
     Raises
     ------
@@ -184,7 +186,7 @@ class Charging:
         ----------
         level, gain, slots
             Levels before charging, share of the capacity charged per time slot at constant power,
-            and number of time slots; arrays that broadcast.
+            and number of time slots; arrays that broadcast to a common shape.
         """
         bend = self.taper_from
         steady = level + gain * slots
@@ -200,15 +202,15 @@ class Charging:
         return reached
 
     def lost_s(self, level: Floats) -> Floats:
-        """Return the worth of what batteries at these levels lack, in s of robot time."""
+        """Return the worth, in s of robot time, of the energy that is missing at these levels."""
         lost: Floats = self.worth_s * (1 - level - self.curve * (level - level**2))
         return lost
 
     def missing_s(self, away: Integers) -> Floats:
-        """Return the additional cost of missing robots in each time slot, shape (T,), in s.
+        """Return the cost of missing robots in each time slot, shape (T,), in s.
 
-        This is the mean over the cases of the number of missing robots, times `missed_s`. It is
-        added to what time away from work costs even if no robot is missing (`idle`).
+        The cost is `missed_s` times the number of missing robots, averaged over the cases. It is
+        incurred in addition to the cost of time away from work that `idle` determines.
 
         Parameters
         ----------
@@ -221,9 +223,10 @@ class Charging:
 
     @property
     def missed_s(self) -> float:
-        """Additional cost, in s, if a robot is away from work in a time slot in which it is needed.
+        """Additional cost of a time slot away from work if the robot is needed, in s.
 
-        It is added to what the time slot costs even if the robot is not needed (`idle`).
+        The total cost is then `slot_s`; the share `idle` of it is incurred even if the robot is not
+        needed.
         """
         return self.slot_s * (1 - self.idle)
 
@@ -295,14 +298,14 @@ def away(data: Charging, robot: Integers, plan: ChargePlan) -> NDArray[np.bool_]
 
 
 def during(first: Integers, end: Integers, slots: int) -> NDArray[np.bool_]:
-    """Return for each interval [first, end) whether it contains each time slot, shape (N, T)."""
+    """Return whether each of N intervals [first, end) contains each time slot, shape (N, T)."""
     slot = np.arange(slots)
     within: NDArray[np.bool_] = (slot >= first[:, np.newaxis]) & (slot < end[:, np.newaxis])
     return within
 
 
 def objective(data: Charging, plan: ChargePlan) -> float:
-    """Return the cost of a plan: energy, drives and missed work, in s of robot time.
+    """Return the cost of a plan (the objective of this module), in s of robot time.
 
     Parameters
     ----------
@@ -317,7 +320,7 @@ def objective(data: Charging, plan: ChargePlan) -> float:
 
 
 def violations(data: Charging, plan: ChargePlan) -> list[str]:
-    """Return what is wrong with a plan; empty if it is feasible.
+    """Return descriptions of the constraints that a plan violates; empty if it is feasible.
 
     Parameters
     ----------

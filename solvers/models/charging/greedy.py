@@ -1,14 +1,17 @@
-r"""Robots choose stays in turn, lowest battery first, until no choice changes or rounds run out.
+r"""Greedy heuristic: robots choose their stays in turn, lowest battery level first.
 
-The bound puts a price :math:`\lambda_t` on absence. Let :math:`m_t(a)` be the cost of missing
-robots in time slot t if a robots are away; then
+This is repeated until a round changes no choice or the maximum number of rounds is reached.
 
-.. math:: m_t(away_t) \ge \lambda_t\, away_t + \min_a \bigl(m_t(a) - \lambda_t a\bigr)
+For the lower bound, each robot pays a price :math:`\lambda_t` for being away in time slot t. Let
+:math:`m_t(a)` be the cost of missing robots in time slot t if a robots are away. For any price,
 
-for any price. With the right-hand side as the cost, and without the limits `places`, each robot can
-choose its stay independently of the others. The prices are the marginal costs of absence in the
-plan found: of one robot more, of one robot fewer, or the mean of the two; the best of the three
-bounds is returned.
+.. math:: m_t(away_t) \ge \lambda_t\, away_t + \min_a \bigl(m_t(a) - \lambda_t a\bigr).
+
+If the right-hand side replaces the cost of missing robots, and the limits `places` are dropped, the
+robots can choose their stays independently; the minimum cost of these choices is a lower bound. The
+heuristic computes this bound for three sets of prices, derived from its plan: the marginal cost of
+one more robot away, that of one robot fewer away, and the mean of the two. It returns the best
+bound.
 """
 
 from __future__ import annotations
@@ -41,14 +44,14 @@ def solve(
     seed: int = 0,
     start: ChargePlan | None = None,
 ) -> Solution[ChargePlan]:
-    """Let each robot take the stay that costs least, given the stays of the others.
+    """Let each robot in turn choose the cheapest stay, given the stays of the others.
 
     Parameters
     ----------
     data
         The problem.
     limits
-        `iterations` limits the number of rounds, in each of which every robot chooses. Default: 10.
+        `iterations` limits the number of rounds; every robot chooses once per round. Default: 10.
     seed
         Not used.
     start
@@ -56,7 +59,7 @@ def solve(
 
     Returns
     -------
-    The plan; work is the number of stays evaluated.
+    The plan and the lower bound. The work is the number of stays evaluated.
     """
     began = perf_counter()
     table = columns(data)
@@ -119,7 +122,7 @@ def _best(data: Charging, table: Columns, robot: int, gone: Integers, taken: Int
 
 
 def _prices(data: Charging, table: Columns, rows: Integers) -> list[Floats]:
-    """Return prices of absence to try: what one robot more, or less, away costs per slot."""
+    """Return the prices to try: marginal costs of one more and one fewer robot away per slot."""
     gone = table.away[rows].sum(axis=0)
     more_s = data.missing_s(gone + 1) - data.missing_s(gone)
     less_s = data.missing_s(gone) - data.missing_s(gone - 1)
@@ -127,7 +130,7 @@ def _prices(data: Charging, table: Columns, rows: Integers) -> list[Floats]:
 
 
 def _bound(data: Charging, table: Columns, prices: Floats) -> float:
-    """Let every robot choose by prices of absence; places are not looked at."""
+    """Return the lower bound at given prices of time away, without the limits `places`."""
     # the fewest that work can miss at these prices: convex in those away, a slope for each price
     away = np.arange(data.robots + 1)
     missed = np.maximum(data.wanted[:, :, np.newaxis] - data.robots + away, 0).mean(axis=0)

@@ -16,5 +16,5 @@ def solve(
     seed: int = 0,
     start: ChargePlan | None = None,
 ) -> Solution[ChargePlan]:
-    """Find the stay of each robot by branch and bound; of the limits, `nodes` and `gap` apply."""
+    """Find an optimal stay of each robot by branch and bound; the limits are `nodes` and `gap`."""
     return solve_by(highs.solve, lambda: formulate(data), limits, seed=seed, start=start)

@@ -7,9 +7,9 @@ r"""The integer program, with a binary column for every possible stay of a robot
     m_{qt} \ge wanted_{qt} - R + \sum_{c \text{ away in } t} x_c, \quad
     \sum_{c \text{ at } g \text{ in } t} x_c \le places_{gt}
 
-where :math:`x_c` is 1 if stay c is made, :math:`cost_c` is its cost without that of missing robots,
-:math:`C_r` are the stays of robot r, "no stay" included, and :math:`m_{qt}` is the number of robots
-missing in time slot t of case q. The other symbols are those of `data`.
+where :math:`x_c` is 1 if stay c is made, :math:`cost_c` is its cost, excluding the cost of missing
+robots, :math:`C_r` are the stays of robot r, including "no stay", and :math:`m_{qt}` is the number
+of robots missing in time slot t of case q. The other symbols are those of the module `data`.
 """
 
 from __future__ import annotations

@@ -1,11 +1,14 @@
-"""Pile-on: assign orders to slots (POA), pods to stations (PPS) and, if given, robots to pods (TA).
+"""Pile-on: assign orders and pods to stations (POA, PPS) and, optionally, robots to pods (TA).
 
-- `joint`: for sites of realistic size, under a deterministic limit; used by controllers;
-- `cp_sat`, `highs`: exact, with M1G (Jiao et al. 2025) as the default weights;
-- `greedy`, `hadgs`: heuristics; their decisions can also start the exact methods;
-- `neighbourhood`: re-optimises two stations at a time exactly.
+The methods are
 
-`relaxation` and `prices` compute lower bounds, `candidates` prunes pairs.
+- `joint`: heuristic and search for sites of realistic size, the default method of controllers;
+- `cp_sat`, `highs`: exact methods;
+- `greedy`, `hadgs`: heuristics, whose decisions can be the start of the exact methods;
+- `neighbourhood`: search that re-optimises two stations at a time exactly.
+
+The default weights are those of the model M1G (Jiao et al. 2025). `relaxation` and `prices` compute
+lower bounds. `candidates` selects the pairs (such as pod and station) that a method considers.
 """
 
 from rmfs.solvers.models.methods import Methods

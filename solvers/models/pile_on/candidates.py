@@ -1,13 +1,13 @@
-"""Candidate pairs: of pods and stations, orders and stations, robots and pods.
+"""Candidate pairs: the pairs of pod and station, order and station, and robot and pod to consider.
 
-The *price* of a pod at a station is the cost of calling it, divided by the number of order lines
-that it could serve alone. The price of an order at a station is the total price of the cheapest
-pods for the lines that inbound pods do not cover, less the worth of the order. Pruning keeps the
-cheapest few pods per wanted SKU and station, the cheapest few orders per station, the cheapest few
-stations per order, and the nearest few robots per pod. A pod that could serve many lines is cheap
-and is kept for many SKUs at once, so few pods remain. The loss from pruning is measured in
-`tests/benchmarks/test_models_pile_on.py`; a bound of the pruned model is not valid for the full
-model (`relaxation.bound` computes a valid one).
+The *price* of a pod at a station is the cost of calling the pod, divided by the number of order
+lines that this pod alone could serve. The price of an order at a station is the total price of the
+cheapest pods for the lines that inbound pods do not cover, minus the worth of the order. Pruning
+keeps the cheapest few pods per wanted SKU and station, the cheapest few orders per station, the
+cheapest few stations per order, and the nearest few robots per pod. A pod that could serve many
+lines is cheap and is kept for several SKUs, so few pods remain in total. The loss from pruning is
+measured in `tests/benchmarks/test_models_pile_on.py`. A bound of the pruned model is not valid for
+the full model; `relaxation.bound` computes a valid one.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ class Candidates:
     calls
         Whether a pod may be called to a station, shape (P, S).
     places
-        Whether an order may go to a station, shape (O, S).
+        Whether an order may be assigned to a station, shape (O, S).
     fetches
         Whether a robot may fetch a pod, shape (R, P).
 
     Raises
     ------
     ModelError
-        If a shape is wrong.
+        If an array does not have two dimensions, or contains values other than 0 and 1.
     """
 
     calls: Flags
@@ -73,16 +73,17 @@ class Pruning:
     Parameters
     ----------
     pods_per_sku
-        Pods per wanted SKU and station. Default 4.
+        Number of cheapest pods kept per wanted SKU and station. Default 4.
     orders_per_slot
-        Orders per free slot of a station. Default 64: for one in twenty of 150 recorded inputs, the
-        solution is worse than without this limit. With 16 it is worse for half of them, by 21 s of
-        robot time on average.
+        Number of cheapest orders kept at a station per free slot. Default 64: for one in twenty of
+        150 recorded inputs, the solution is worse than without this limit. With 16, it is worse for
+        half of them, by 21 s of robot time on average.
     stations_per_order
-        Cheapest stations kept for each order, even if it is not among their cheapest orders.
-        Applies only if more stations than this number have free slots. Default 4.
+        Number of cheapest stations kept for each order, in addition to the stations that keep the
+        order as one of their cheapest. Applies only if more stations than this number have free
+        slots. Default 4.
     robots_per_pod
-        Robots per pod. Default 4.
+        Number of nearest robots kept per pod. Default 4.
 
     Raises
     ------
@@ -103,15 +104,16 @@ class Pruning:
 def everything(data: PileOn) -> Candidates:
     """Return all pairs that can be useful, without pruning.
 
+    These are the pairs of
+
+    - a station to which pods may be called, and an available pod that holds a SKU wanted there;
+    - a station with free slots, and any order;
+    - a free robot, and an available pod that holds a SKU wanted at any station and needs a robot.
+
     Parameters
     ----------
     data
         The input.
-
-    Returns
-    -------
-    Each station with the available pods that hold a SKU wanted there and, if it has free slots,
-    with all orders; each of these pods that needs a robot, with all free robots.
     """
     on_order = np.zeros(data.skus, dtype=np.bool_)
     on_order[data.line_sku] = True
@@ -125,14 +127,14 @@ def everything(data: PileOn) -> Candidates:
 
 
 def prune(data: PileOn, pruning: Pruning | None = None) -> Candidates:
-    """Keep the cheapest pairs.
+    """Return the pairs that remain after pruning (see the module).
 
     Parameters
     ----------
     data
         The input.
     pruning
-        How many pairs to keep. Default: the defaults of `Pruning`.
+        How many candidates to keep. Default: the defaults of `Pruning`.
     """
     keep = Pruning() if pruning is None else pruning
     if not data.stations:
@@ -164,7 +166,7 @@ def prune(data: PileOn, pruning: Pruning | None = None) -> Candidates:
 
 
 def _order_price(data: PileOn, sku_price: Floats) -> Floats:
-    """What the missing lines of each order cost at each station, shape (O, S)."""
+    """Price of each order at each station, shape (O, S)."""
     missing = data.line_units[:, None] > data.surplus[:, data.line_sku].T
     price = np.where(missing, sku_price[data.line_sku], 0.0)
     if not data.orders:
@@ -186,9 +188,10 @@ def _best_places(data: PileOn, price: Floats, keep: Pruning) -> Flags:
 
 
 def call_price(data: PileOn) -> Floats:
-    """Cost of calling a pod, divided by the number of lines it could serve alone, shape (P, S).
+    """Return the price of each pod at each station, shape (P, S).
 
-    The cost includes the way of the nearest free robot to the pod.
+    This is the cost of calling the pod, including the drive of the nearest free robot to the pod,
+    divided by the number of order lines that the pod could serve alone.
 
     Parameters
     ----------
@@ -199,10 +202,11 @@ def call_price(data: PileOn) -> Floats:
 
 
 def whole_price(data: PileOn) -> Floats:
-    """Price of the pods that complete each order at its cheapest single station, shape (O,).
+    """Return the price of completing each order at its cheapest station, shape (O,).
 
-    A line costs nothing if stock left on pods under way covers it, and otherwise the lowest
-    `call_price` of an available pod that holds its SKU; infinite if no available pod does.
+    The price at a station is the sum over the lines of the order. A line costs nothing if the
+    surplus of inbound pods covers it. Otherwise, it costs the lowest `call_price` of an available
+    pod that holds its SKU, or inf if there is no such pod.
 
     Parameters
     ----------
@@ -222,9 +226,9 @@ def whole_price(data: PileOn) -> Floats:
 
 
 def fetch_estimate(data: PileOn) -> Floats:
-    """Weighted cost of the nearest free robot's way to each pod, shape (P,).
+    """Return the weighted travel cost from the nearest free robot to each pod, shape (P,).
 
-    It is 0 for pods that need no free robot, and for all pods if no robot is free.
+    The cost is 0 for pods that need no free robot, and for all pods if no robot is free.
 
     Parameters
     ----------
@@ -238,7 +242,7 @@ def fetch_estimate(data: PileOn) -> Floats:
 
 
 def _lines(data: PileOn) -> Integers:
-    """Order lines that a pod could serve alone, shape (P,)."""
+    """Number of order lines that a pod could serve alone, shape (P,)."""
     # Lines of the same SKU and units are counted together.
     kinds, count = np.unique(np.stack([data.line_sku, data.line_units]), axis=1, return_counts=True)
     enough = data.stock[:, kinds[0]] >= kinds[1]

@@ -1,9 +1,10 @@
 """The columns of the pile-on program: their costs, and their conversion into a decision.
 
-The letters of the columns are those of `program`. Pairs have columns only if they are candidates,
-and a line has a column z at a station only if the pods that may come there could cover it. In
-`Variant.WHOLE` the column z of a line *is* the column y of its order, so each family of rows is
-written once for all variants; y exists only where all lines of the order could be covered.
+The columns have the same letters as in the module `program`. A pair has a column only if it is a
+candidate, and a line has a column z at a station only if the pods that may come there could cover
+the line. In `Variant.WHOLE`, the column y of an order also serves as the column z of each of its
+lines, so the code that adds rows is the same for all variants; y then exists only at stations where
+all lines of the order could be covered.
 """
 
 from __future__ import annotations
@@ -24,18 +25,18 @@ NONE = np.zeros(0, dtype=np.int64)
 
 @dataclass(frozen=True)
 class Columns:
-    """The index of each column and the entities it refers to, for each kind of column.
+    """The indices of the columns of each kind, with the entities that they refer to.
 
     Parameters
     ----------
     pod, station, call
-        Pod, station and column x of each call.
+        Pod, station and column x of each pair of pod and station.
     order, at, slot, prospect
-        Order, station and columns y and g of each *place*, that is, of each pair of an order and a
-        station where it may go; `prospect` is empty if prospects are not rewarded.
+        Order, station, column y and column g of each *place* (pair of an order and a station to
+        which it may be assigned); `prospect` is empty if prospects are not rewarded.
     line, place, cover
-        Line, index of a place of its order, and column z, for each line and each place at which the
-        line could be covered; z is y in `Variant.WHOLE`.
+        Line, index of the place, and column z of each pair of a line and a place of its order at
+        which the line could be covered. In `Variant.WHOLE`, z is the column y of the place.
     complete, started
         Columns e and w of each order, empty in variants that do not need them.
     short_station, short_sku, short
@@ -65,12 +66,12 @@ class Columns:
 
 
 def add_columns(builder: ProgramBuilder, data: PileOn, candidates: Candidates) -> Columns:
-    """Add all columns to a program.
+    """Add all columns to a program, and return their indices.
 
     Parameters
     ----------
     builder
-        Where to add them.
+        Builder of the program.
     data
         The input.
     candidates
@@ -154,7 +155,7 @@ def decode(data: PileOn, columns: Columns, x: Floats) -> Assignment:
 
 
 def name_columns(data: PileOn, columns: Columns, names: Names) -> None:
-    """Name the columns.
+    """Name the columns of the program.
 
     Parameters
     ----------
@@ -163,7 +164,7 @@ def name_columns(data: PileOn, columns: Columns, names: Names) -> None:
     columns
         The columns of the program.
     names
-        The names to fill in.
+        The object in which the names are entered.
     """
     c = columns
     if c.cover.size and data.variant is not Variant.WHOLE:
@@ -209,7 +210,10 @@ def encode(data: PileOn, columns: Columns, values: Assignment, size: int) -> Flo
 
 
 def coverable_lines(data: PileOn, candidates: Candidates) -> Flags:
-    """Whether the pods inbound or callable to a station could cover a line there, shape (L, S).
+    """Return whether each line could be covered at each station, shape (L, S).
+
+    A line could be covered if the surplus of the station's inbound pods and the stock of all pods
+    that may be called to the station suffice for it.
 
     Parameters
     ----------
@@ -227,7 +231,7 @@ def coverable_lines(data: PileOn, candidates: Candidates) -> Flags:
 
 
 def every(lines: Flags, data: PileOn) -> Flags:
-    """Return whether a flag is set for all lines of each order, shape (O, ...).
+    """Return for each order whether a flag is set for all its lines, shape (O, ...).
 
     Parameters
     ----------
@@ -242,7 +246,7 @@ def every(lines: Flags, data: PileOn) -> Flags:
 
 
 def _slot_cost(data: PileOn) -> Floats:
-    """Cost of a column y per order: the filled slot, and what goes with it in this variant."""
+    """Cost of a column y per order: the reward for filling a slot, and other terms by variant."""
     weights, variant = data.weights, data.variant
     lines = np.diff(data.first_line)
     cost = np.full(data.orders, -weights.empty_slot)
@@ -257,7 +261,7 @@ def _slot_cost(data: PileOn) -> Floats:
 
 
 def _start_cost(data: PileOn) -> Floats:
-    """Cost of a column w: the first part is free of the part's weight, and the worth counts."""
+    """Cost of a column w per order: refunds the weight `part` of its first slot; adds rewards."""
     cost = -data.order_worth - data.weights.part
     if data.variant is Variant.SPLIT_STATIONS:
         cost = cost - data.reward

@@ -21,21 +21,21 @@ def solve(
     candidates: Candidates | None = None,
     strengthen: bool = True,
 ) -> Solution[Assignment]:
-    """Decide with CP-SAT; of the limits, `deterministic_s` and `gap` apply.
+    """Solve a pile-on model with CP-SAT; the limits are `deterministic_s` and `gap`.
 
     Parameters
     ----------
     data, limits, seed, start
-        As for every method.
+        As for every method (see `Methods`).
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used.
         Default: all. If candidates are given, the bound is -inf.
     strengthen
-        Whether to add the strengthening rows (8) of `program`. Default: yes.
+        Whether to add constraint (8) of `program`, which tightens the relaxation. Default: yes.
 
     Returns
     -------
-    The solution; it always has values.
+    The solution. It always has values, at worst those of the start or of the empty decision.
     """
     # the formulation is tight as it stands: presolving takes longer than it saves
     backend = partial(cp_sat.solve, presolve=False)

@@ -1,9 +1,10 @@
 r"""The input of the pile-on models: one snapshot of orders, pods, stations and robots.
 
 Sets: stations s, orders o with lines l (SKU k(l), units q_l), pods p with stock a_pk, robots r.
-Earlier decisions are part of the data: the open demand of orders already at stations, pods on their
-way, and robots that carry or fetch a pod. The stock of the pods on their way to station s first
-serves the open demand there, :math:`open_{sk}` units of SKU k; a surplus or a shortage remains:
+Earlier decisions are part of the data: the open demand of orders already at stations, inbound pods
+(pods that are already assigned to a station), and robots that carry or fetch a pod. The stock of
+the inbound pods of station s, written :math:`p \to s`, first serves the open demand there:
+:math:`open_{sk}` units of SKU k. A surplus or a shortage remains:
 
 .. math::
 
@@ -29,7 +30,7 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class PileOn:
-    """Input for assigning orders and pods to stations (POA, PPS), optionally robots to pods (TA).
+    """Input for assigning orders and pods to stations (POA, PPS) and robots to pods (TA, optional).
 
     Parameters
     ----------
@@ -39,8 +40,8 @@ class PileOn:
         Order, SKU and units of each line of the orders to be assigned, shape (L,). Lines are sorted
         by order, then SKU; orders are numbered 0..O-1, and each has at least one line.
     stock
-        Units per pod and SKU that no order has reserved yet, shape (P, K). Only SKUs with demand
-        need a column.
+        Units per pod and SKU that no order has reserved yet, shape (P, K). SKUs without demand may
+        be left out.
     travel
         Cost of bringing a pod to a station, shape (P, S).
     available
@@ -49,8 +50,8 @@ class PileOn:
         Station that a pod is already assigned to, shape (P,); -1: none. A pod that is assigned to a
         station is not called again.
     open_units
-        Units per station and SKU that the orders already there still need but have not reserved on
-        any pod, shape (S, K).
+        Units per station and SKU that orders already at the station still need but have not
+        reserved on any pod, shape (S, K).
     fetch
         Cost for each robot to reach each pod, shape (R, P). Default: none, so that no robots are
         assigned.
@@ -62,8 +63,8 @@ class PileOn:
         Extra reward for giving an order its (first) slot, shape (O,), for example for its age or
         due time. Default: none.
     may_call
-        Whether pods may be called to each station, shape (S,). A station to which none may be
-        called receives only pods that are on their way already. Default: to all.
+        Whether pods may be called to each station, shape (S,). A station to which no pods may be
+        called receives only its inbound pods. Default: pods may be called to every station.
     variant
         How orders may be covered. Default: whole.
     weights
@@ -123,7 +124,7 @@ class PileOn:
         self._check_relations()
 
     def _check_relations(self) -> None:
-        """Check what involves several fields."""
+        """Check the conditions that involve several fields."""
         step = np.diff(self.line_order, prepend=0)
         first_is_zero = self.lines == 0 or self.line_order[0] == 0
         require(
@@ -169,12 +170,12 @@ class PileOn:
 
     @property
     def robots(self) -> int:
-        """Number of robots R; 0 if no robots are assigned (no `fetch`)."""
+        """Number of robots R; 0 if robots are not assigned (`fetch` is not given)."""
         return 0 if self.fetch is None else int(self.fetch.shape[0])
 
     @cached_property
     def first_line(self) -> Integers:
-        """First line of each order, followed by the number of lines, shape (O + 1,)."""
+        """Index of the first line of each order, followed by L, shape (O + 1,)."""
         return np.searchsorted(self.line_order, np.arange(self.orders + 1)).astype(np.int64)
 
     @cached_property
@@ -207,13 +208,13 @@ class PileOn:
 
     @cached_property
     def call_cost(self) -> Floats:
-        """Weighted cost of calling a pod, not counting the robot's way to the pod, shape (P, S)."""
+        """Weighted cost of calling a pod, excluding the robot's drive to the pod, shape (P, S)."""
         cost: Floats = self.weights.visit + self.weights.travel * self.travel
         return cost
 
     @cached_property
     def free_robots(self) -> Integers:
-        """Robots that may fetch a pod, in ascending order."""
+        """Indices of the robots that may fetch a pod, in ascending order."""
         if self.robot_pod is None:
             return np.zeros(0, dtype=np.int64)
         return np.flatnonzero(self.robot_pod < 0)

@@ -1,13 +1,15 @@
-"""Pod match: repeatedly makes the pod call with the greatest gain over all stations.
+"""Pod match: a greedy heuristic that repeatedly calls the pod with the greatest gain.
 
-First, orders are *placed* (get a slot) wherever the stock of inbound pods covers them. Then the pod
-(or the set of pods for one order) with the greatest gain over all stations is called, and the free
-slots of its station are filled; this is repeated until no call has a gain. *Prospects* are orders
-that get no slot but could be filled from the pods that come. Finally, pods are called for further
-prospects in the same way, if the value of these prospects exceeds the cost of the call. A station
-is scored again only when it heads the list sorted by gain (lazy evaluation): its gain is assumed
-not to rise while orders and pods go to other stations. Deterministic: ties go to the station, then
-to the pod, with the lower number.
+1. Orders are *placed* (get a slot) at stations whose inbound pods cover them.
+2. The pod (or the set of pods for one order) with the greatest gain over all stations is called,
+   and free slots of its station are filled. This is repeated until no call has a positive gain.
+3. Calls that are no longer needed are cancelled.
+4. *Prospects* are added: orders that get no slot, although the pods of a station could serve them
+   in full. Further pods are called for prospects whose value exceeds the cost of the call.
+
+The best call of a station is computed again only when the station heads the list sorted by gain
+(lazy evaluation), as its gain is assumed not to rise while orders and pods go to other stations.
+Ties are broken by the lower number of the station, then of the pod, so the result is deterministic.
 """
 
 from __future__ import annotations
@@ -37,7 +39,7 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Decide by greatest gain.
+    """Solve a pile-on model by pod match (see the module).
 
     `iterations` limits the number of calls made to fill slots and, separately, the number of calls
     made for prospects.
@@ -45,7 +47,7 @@ def solve(
     Parameters
     ----------
     data, limits, seed, start
-        As for every method; neither seed nor start is used.
+        As for every method (see `Methods`); `seed` and `start` are not used.
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used.
         Default: all.
@@ -71,12 +73,12 @@ def solve(
 
 
 def fill_slots(partial: PartialAssignment, most: int | None = None) -> None:
-    """Place orders and call pods until no call has a gain.
+    """Place orders and call pods until no call has a positive gain.
 
     Parameters
     ----------
     partial
-        The partial assignment to complete.
+        The partial assignment, changed in place.
     most
         Maximum number of calls. Default: no limit.
     """
@@ -88,13 +90,14 @@ def fill_slots(partial: PartialAssignment, most: int | None = None) -> None:
 def add_prospects(partial: PartialAssignment, most: int | None = None) -> None:
     """Add prospects that leftover stock covers, then call pods for further prospects.
 
-    A prospect is an order that gets no slot although the pods of a station could serve it in full.
-    A pod is called if the value of its prospects exceeds the cost of the call.
+    A prospect is an order that gets no slot, although the pods of a station could serve it in full.
+    A pod is called if the value of the prospects that it makes possible exceeds the cost of the
+    call.
 
     Parameters
     ----------
     partial
-        A partial assignment that `fill_slots` has completed.
+        A partial assignment completed by `fill_slots`; changed in place.
     most
         Maximum number of calls. Default: no limit.
     """
@@ -109,9 +112,9 @@ def _best_first(
     use: Callable[[Call], None],
     most: int | None,
 ) -> None:
-    """Make the call of greatest gain over all stations, again and again.
+    """Repeatedly make the call with the greatest gain over all stations.
 
-    `score` finds the best call of a station; `use` takes what a call brought.
+    `score` returns the best call of a station; `use` assigns orders after a call.
     """
     # A station that was never scored comes first.
     queue: list[tuple[float, int, int, Call | None]] = [

@@ -1,19 +1,25 @@
-"""HADGS: alternate between orders and pods, station by station (Jiao et al. 2025, section 3).
+"""The heuristic HADGS: alternates between orders and pods (Jiao et al. 2025, section 3).
 
-For each station in turn: place every order that the station's pods already cover (step OA of the
-paper); then call the pod p, with its nearest robot r, that minimises (steps PS and TA)
+For each station in turn, two steps alternate until no call is useful:
 
-    K(p) = -complete * (orders p would complete) + travel * (d_rp + d_ps)     (eq. 23)
+1. Place the orders that the pods of the station already cover, as long as slots are free (step OA
+   of the paper).
+2. Call the pod p that minimises (steps PS and TA)
 
-with d_rp from robot to pod and d_ps from pod to station; repeat both until no call is useful. If no
-single pod completes an order (or eases a shortage), `SETS` sets of pods are sampled, each covering
-a random order, and the best set is improved by `SEARCHES` local searches, each of which exchanges
-one pod. `SETS` and `SEARCHES` are the paper's l1 = 10 and l2 = 3. Our choices where the paper
-leaves details open: stations are processed in ascending order of the total travel of their inbound
-pods; orders are placed by decreasing `worth` and, if equal, by increasing units. The paper does not
-consider units that orders already placed still lack (shortages), and has no weights `unit` and
-`visit`; here K contains these two weights, and each unit of shortage that a pod eases lowers K by
-`open_unit`.
+       K(p) = -complete * (orders that p would complete) + travel * (d_rp + d_ps)     (eq. 23)
+
+   where d_rp is the distance from the robot r nearest to the pod, and d_ps that from the pod to the
+   station.
+
+If no single pod completes an order (or eases a shortage), `SETS` sets of pods are sampled, each
+covering a random order. The best set is improved by `SEARCHES` local searches, each of which
+exchanges one pod. `SETS` and `SEARCHES` are the paper's l1 = 10 and l2 = 3.
+
+The paper leaves some details open. Here, stations are processed in ascending order of the total
+travel of their inbound pods, and orders are placed by decreasing `worth` and, if equal, by
+increasing units. The paper considers neither the weights `unit` and `visit` nor shortages (units
+that earlier orders of a station still lack). Here, K includes these two weights, and each unit of
+shortage that a single pod eases lowers K by `open_unit`.
 """
 
 from __future__ import annotations
@@ -50,12 +56,12 @@ def solve(
     start: Assignment | None = None,
     candidates: Candidates | None = None,
 ) -> Solution[Assignment]:
-    """Decide by HADGS; `iterations` limits the number of pod calls.
+    """Solve a pile-on model by the heuristic HADGS; `iterations` limits the number of pod calls.
 
     Parameters
     ----------
     data, limits, seed, start
-        As for every method; the start is not used.
+        As for every method (see `Methods`); `start` is not used.
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used.
         Default: all.
@@ -92,7 +98,7 @@ def solve(
 
 
 def _stations(data: PileOn) -> list[int]:
-    """Stations in the order of the total travel of their inbound pods, then index."""
+    """Return the stations in ascending order of total travel of their inbound pods, then index."""
     pods = np.flatnonzero(data.inbound >= 0)
     coming = data.travel[pods, data.inbound[pods]]
     total = np.bincount(data.inbound[pods], coming, minlength=data.stations)
@@ -153,7 +159,7 @@ def _sampled_set(
 def _k(
     partial: PartialAssignment, station: int, pods: Integers, cost: Floats, chosen: Integers
 ) -> float:
-    """K of a set of pods; inf if there are not robots enough for it."""
+    """K of a set of pods; inf if there are not enough free robots for it."""
     data = partial.data
     members = np.unique(chosen)
     if data.fetch is not None and data.needs_robot[pods[members]].sum() > partial.robots.size:

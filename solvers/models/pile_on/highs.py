@@ -19,12 +19,12 @@ def solve(
     candidates: Candidates | None = None,
     strengthen: bool = True,
 ) -> Solution[Assignment]:
-    """Decide with HiGHS; of the limits, `nodes` and `gap` apply.
+    """Solve a pile-on model with HiGHS; the limits are `nodes` and `gap`.
 
     Parameters
     ----------
     data, limits, seed, start
-        As for every method.
+        As for every method (see `Methods`).
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used.
         Default: all. If candidates are given, the bound is -inf.
@@ -33,6 +33,6 @@ def solve(
 
     Returns
     -------
-    The solution; it always has values.
+    The solution. It always has values, at worst those of the start or of the empty decision.
     """
     return solve_program(highs.solve, data, limits, seed, start, candidates, strengthen)

@@ -26,26 +26,26 @@ def solve(
     pruning: Pruning | None = None,
     bound_steps: int = prices.ITERATIONS,
 ) -> Solution[Assignment]:
-    """Decide on orders, pods and robots together; limits as for `neighbourhood.solve`.
+    """Decide on orders, pods and robots together; the limits are those of `neighbourhood.solve`.
 
     Parameters
     ----------
     data, limits, seed
-        As for every method.
+        As for every method (see `Methods`).
     start
         A decision to start from if it is better than that of pod match. Default: none.
     pruning
-        How many candidates CP-SAT is given. Default: the defaults of `Pruning`.
+        How many candidate pairs CP-SAT may use. Default: the defaults of `Pruning`.
     bound_steps
-        Number of steps of `prices.bound`; with 0, the bound is that of the initial prices. Default
-        `prices.ITERATIONS`.
+        Number of subgradient steps of `prices.bound`; with 0, the bound is that of the initial
+        prices. Default `prices.ITERATIONS`.
 
     Returns
     -------
-    A feasible decision, never worse than pod match or the start, with a bound that is valid for the
-    full input. `work` is measured in deterministic seconds of CP-SAT, whose last run may exceed the
-    limit. `built` counts the effort of building the programs and of preparing pod match. The steps
-    for the bound are counted nowhere.
+    A feasible decision, never worse than that of pod match or the start, with a bound that is valid
+    for the full input. `work` is measured in deterministic seconds of CP-SAT, whose last run may
+    exceed the limit. `built` counts the effort of building the programs and of preparing pod match.
+    Neither includes the steps for the bound.
     """
     began = time.perf_counter()
     rule = greedy.solve(data, seed=seed)

@@ -1,8 +1,8 @@
 """Use leftover slots and stock in variants that allow partly covered orders.
 
-Heuristics place only orders that are covered in full. Slots that stay empty can be filled with
-orders whose open lines are covered later (`Variant.LATER`), or with those lines of an order that
-the remaining stock covers (`Variant.SPLIT_TIME` and `Variant.SPLIT_BOTH`).
+Heuristics place only orders that are covered in full. A slot that stays empty can be given to a
+partly covered order. The uncovered lines of this order wait for later pods (`Variant.LATER`) or
+stay in the backlog (`Variant.SPLIT_TIME` and `Variant.SPLIT_BOTH`).
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ def cover_rest(data: PileOn, values: Assignment) -> Assignment:
 
     Returns
     -------
-    A feasible decision that is at least as good; in variants without partly covered orders, the
-    given one.
+    A feasible decision that is at least as good as the given one. In variants without partly
+    covered orders, the given decision is returned unchanged.
     """
     if data.variant not in (Variant.LATER, Variant.SPLIT_TIME, Variant.SPLIT_BOTH):
         return values

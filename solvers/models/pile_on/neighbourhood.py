@@ -1,4 +1,4 @@
-"""A search for large inputs: two stations at a time are re-optimised exactly, the others fixed.
+"""A search for large inputs: re-optimises two stations at a time, while all others stay fixed.
 
 The search starts from a decision and re-optimises, in rounds, pairs of stations that are close to
 each other. For each pair, CP-SAT decides anew on the orders placed there, the waiting orders, and
@@ -41,17 +41,18 @@ def solve(
     Parameters
     ----------
     data, seed, start
-        As for every method.
+        As for every method (see `Methods`). Default of `start`: the empty decision.
     limits
         ``deterministic_s`` limits the work on all parts together (default: one deterministic
-        second), ``iterations`` the number of re-optimisations; ``gap`` applies to each of them.
+        second); ``iterations`` limits the number of re-optimisations; ``gap`` applies to each
+        re-optimisation.
     candidates
         The pairs of pod and station, order and station, and robot and pod that may be used.
         Default: all.
 
     Returns
     -------
-    The decision. It has a bound only if there is at most one part and no candidates are given.
+    The decision. Its bound is -inf if there is more than one part, or if candidates are given.
     """
     left = DEFAULT_WORK if limits.deterministic_s is None else limits.deterministic_s
     limits = replace(limits, deterministic_s=left)
@@ -105,9 +106,9 @@ def solve(
 def station_groups(data: PileOn) -> list[Integers]:
     """Return the pairs of stations to decide together.
 
-    The stations that have free slots or shortages are arranged in a ring, in which stations close
-    to each other are neighbours; any two neighbours are a pair. If there are at most two such
-    stations, they are the only group.
+    The stations that have free slots or shortages are arranged in a ring, so that stations close to
+    each other are neighbours. Every two neighbours in the ring form a pair. If there are only one
+    or two such stations, these form a single group.
 
     Parameters
     ----------
@@ -116,7 +117,7 @@ def station_groups(data: PileOn) -> list[Integers]:
 
     Returns
     -------
-    The pairs, ordered so that the first half of them (rounded up) contains every station.
+    The pairs, ordered so that the first half of the list (rounded up) contains every station.
     """
     stations = np.flatnonzero((data.slots > 0) | (data.shortage > 0).any(axis=1))
     if stations.size <= WIDTH:
@@ -128,7 +129,7 @@ def station_groups(data: PileOn) -> list[Integers]:
 
 
 def _position(data: PileOn, stations: Integers) -> Integers:
-    """Place of each station in a nearest-neighbour tour by the travel of pods to them."""
+    """Position of each station in a nearest-neighbour tour; near means similar travel of pods."""
     travel = data.travel[:, stations]
     tour = [0]
     while len(tour) < stations.size:

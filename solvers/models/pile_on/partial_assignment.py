@@ -1,8 +1,8 @@
-"""A partial decision, which heuristics read and extend step by step.
+"""A partial decision, which heuristics extend step by step.
 
-It contains only orders that are covered as a whole, which every variant allows. With array
-operations over the candidate pods of a station it answers two questions: how much would calling one
-pod gain, and which set of pods would complete one order at the least cost?
+It contains only orders that are covered in full, which every variant allows. For the candidate pods
+of a station, it computes how much would be gained by calling each of them, and which set of them
+would complete one order at the least cost.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ table entries to `Solution.built`."""
 
 @dataclass(frozen=True)
 class Call:
-    """Pods to call to a station together, and the gain compared with not calling them."""
+    """Pods to be called to a station together, and the gain from calling them."""
 
     gain: float
     station: int
@@ -33,7 +33,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Offers:
-    """The pairs of pod and line where the pod holds the line's SKU, as a sparse list.
+    """The pairs of a pod and a line whose SKU the pod holds, as a sparse list.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Offers:
 
     @classmethod
     def of(cls, data: PileOn) -> Offers:
-        """List the pairs of an input."""
+        """Return the pairs of an input."""
         pod, line = np.nonzero(data.stock[:, data.line_sku])
         order = data.line_order[line]
         new = (np.diff(pod, prepend=-1) != 0) | (np.diff(order, prepend=-1) != 0)
@@ -101,13 +101,14 @@ class PartialAssignment:
 
     @property
     def open_orders(self) -> Flags:
-        """Whether an order neither has a slot nor is a prospect, shape (O,)."""
+        """Whether each order has no slot yet and is not a prospect, shape (O,)."""
         return (self.order_station < 0) & (self.prospect < 0)
 
     def coverable(self, station: int) -> Flags:
-        """Whether an order is covered in full by the stock left in a station's pods, shape (O,).
+        """Return whether the stock left in a station's pods covers each order, shape (O,).
 
-        False for orders that have a slot, are prospects, or may not go to the station.
+        The result is False for orders that have a slot, are prospects, or may not be assigned to
+        the station.
         """
         left = self.stock_left[station, self.data.line_sku]
         self.scored += self.data.orders
@@ -121,10 +122,10 @@ class PartialAssignment:
         self.slots[station] -= 1
 
     def fill(self, station: int) -> None:
-        """Fill slots with coverable orders, by greatest `worth`, then fewest units, then index.
+        """Place coverable orders in free slots, by greatest `worth`, then fewest units, then index.
 
-        Of orders with the same worth, small ones go first because they leave the most stock for the
-        others.
+        Among orders with the same worth, small ones take precedence because they leave the most
+        stock for the others.
         """
         while self.slots[station] > 0:
             ready = self.coverable(station)[self._rank]
@@ -133,10 +134,10 @@ class PartialAssignment:
             self.place(int(self._rank[ready.argmax()]), station)
 
     def reserve(self, station: int) -> None:
-        """Choose prospects at a station, in the sequence of `fill`.
+        """Choose prospects at a station, in the same sequence as `fill`.
 
-        A *prospect* is an order that gets no slot although the remaining stock covers it in full;
-        its units are taken from this stock.
+        A *prospect* is an order that gets no slot, although the remaining stock covers it in full.
+        Its units are taken from this stock.
         """
         if not self.data.weights.prospects or not self.data.slots[station]:
             return
@@ -152,7 +153,7 @@ class PartialAssignment:
         self.stock_left[station, data.line_sku[lines]] -= sign * data.line_units[lines]
 
     def call(self, call: Call) -> None:
-        """Call pods to a station; their stock eases shortages first."""
+        """Call pods to a station; their stock is used first to ease shortages."""
         for pod in call.pods:
             self.pod_station[pod] = call.station
             eased = np.minimum(self.shortage[call.station], self.data.stock[pod])
@@ -162,21 +163,21 @@ class PartialAssignment:
                 self._send_robot(pod)
 
     def free_pods(self, station: int) -> Integers:
-        """Candidate pods of a station that are not called yet and have a robot or can get one."""
+        """Return the uncalled candidate pods of a station that have a robot or can get one."""
         pods = self._pods_of[station]
         return pods[(self.pod_station[pods] < 0) & np.isfinite(self._fetch[pods])]
 
     def call_costs(self, pods: Integers, station: int) -> Floats:
-        """Cost of calling each pod to a station, including the way of the nearest free robot."""
+        """Return the cost of calling each pod, including the drive of the nearest free robot."""
         cost: Floats = self.data.call_cost[pods, station] + self._fetch[pods]
         return cost
 
     def completions(self, pods: Integers, station: int) -> tuple[Floats, Floats]:
-        """Number and units of orders that each pod would complete: two arrays, one entry per pod.
+        """Return the number, and the total units, of the orders that each pod would complete.
 
-        Each order that neither has a slot nor is a prospect is tested on its own against the pod's
-        units and what is left in the station's pods, so the same units may count for several
-        orders.
+        Both arrays have one entry per pod. Orders that have a slot or are prospects do not count.
+        Each of the other orders is compared separately with the stock of the pod and the stock left
+        in the station's pods, so the same stock may count for several orders.
         """
         offers, need = self._offers, self._needs(station)
         lacking = need > 0
@@ -192,19 +193,19 @@ class PartialAssignment:
         return count[pods].astype(np.float64), of_them[pods].astype(np.float64)
 
     def easing(self, pods: Integers, station: int) -> Integers:
-        """Units of a station's shortage that each pod could ease, one entry per pod."""
+        """Return the units of a station's shortage that each pod could ease, one entry per pod."""
         skus = np.flatnonzero(self.shortage[station])
         stock = self.data.stock[pods[:, None], skus]
         eased: Integers = np.minimum(stock, self.shortage[station, skus]).sum(axis=1)
         return eased
 
     def best_call(self, station: int) -> Call | None:
-        """The call with the greatest gain at a station: one pod, or the set of pods for one order.
+        """Return the call with the greatest gain at a station; None if no gain is positive.
 
-        The gain of a pod is the value of the slots it fills, the prospects it brings and the
-        shortage it eases, minus the cost of calling it. If the pod with the greatest gain fills no
-        slot although one is free, it is compared with the cheapest set of pods that completes an
-        order. None if no call has a gain.
+        The gain of a pod is the value of the slots that it fills, the prospects that it makes
+        possible and the shortage that it eases, minus the cost of calling it. If the pod with the
+        greatest gain fills no slot although one is free, it is compared with the cheapest set of
+        pods that completes an order.
         """
         pods = self.free_pods(station)
         if not pods.size or (not self.slots[station] and not self.shortage[station].any()):
@@ -230,12 +231,11 @@ class PartialAssignment:
         return max(options, key=lambda call: call.gain, default=None)
 
     def best_prospect_call(self, station: int) -> Call | None:
-        """The best pod to call for prospects; None if no pod's prospects are worth the call.
+        """Return the best pod to call for prospects; None if no call is worth its cost.
 
-        As constraint (5) of `program` demands, the pod must serve an order with a slot at the
-        station. This is either an order already placed or one of the pod's prospects. In the second
-        case, the prospect takes the slot of a placed order, which must not be the only placed order
-        that another called pod serves.
+        By constraint (5) of `program`, the pod must serve an order with a slot at the station. If
+        it serves no order already placed there, one of the prospects must take the slot of a placed
+        order. That placed order must not be the only one that another called pod serves.
         """
         pods = self.free_pods(station)
         if self._spare_order(station) < 0:
@@ -249,10 +249,11 @@ class PartialAssignment:
         return Call(float(gain[best]), station, (int(pods[best]),)) if gain[best] > 0 else None
 
     def settle_prospects(self, call: Call) -> None:
-        """Add the prospects of a call.
+        """Add the prospects that a call makes possible.
 
-        If the called pod serves no placed order, one of the prospects gets the slot of a placed
-        order. If that is impossible, the call is taken back.
+        If the called pod serves no placed order, one of the prospects exchanges roles with a placed
+        order: it gets the slot, and the placed order becomes a prospect. If no exchange is
+        possible, the call is cancelled.
         """
         station, pods = call.station, np.array(call.pods)
         new = np.flatnonzero(self.prospect < 0)
@@ -270,7 +271,7 @@ class PartialAssignment:
         self.order_station[spare], self.prospect[spare] = -1, station
 
     def _take_back(self, call: Call, new: Integers) -> None:
-        """Undo a call that brought prospects only; its robot stays taken."""
+        """Undo a call that was made only for prospects; its robot is not released."""
         for order in new.tolist():
             self._take(order, call.station, -1)
             self.prospect[order] = -1
@@ -304,7 +305,7 @@ class PartialAssignment:
         return int(spare[self.data.order_worth[spare].argmin()]) if spare.size else -1
 
     def _best_set(self, pods: Integers, cost: Floats, station: int) -> Call | None:
-        """The open order whose missing lines are cheapest to bring, one pod per line."""
+        """Return the cheapest set of pods that completes one order, one pod per missing line."""
         data, offers, need = self.data, self._offers, self._needs(station)
         lacking = need > 0
         if not lacking.any():
@@ -379,9 +380,7 @@ def decision(partial: PartialAssignment) -> Assignment:
 
 
 def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
-    """Return the free robot that fetches each pod, at the least total cost, shape (P,).
-
-    A pod that is not called, or needs no free robot, gets -1.
+    """Assign free robots to the called pods at the least total cost.
 
     Parameters
     ----------
@@ -390,6 +389,11 @@ def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
     pod_station
         Station to which each pod is called, or -1 if it is not called, shape (P,). There must be
         enough free robots.
+
+    Returns
+    -------
+    The free robot that fetches each pod, shape (P,); -1 if the pod is not called or needs no free
+    robot.
     """
     pod_robot = np.full(data.pods, -1)
     pods = np.flatnonzero((pod_station >= 0) & data.needs_robot)
@@ -400,7 +404,7 @@ def assign_robots(data: PileOn, pod_station: Integers) -> Integers:
 
 
 def drop_idle(partial: PartialAssignment) -> None:
-    """Take back the calls of pods that are not needed any more, the most expensive call first.
+    """Cancel the calls of pods that are no longer needed, starting with the most expensive call.
 
     Parameters
     ----------

@@ -1,28 +1,31 @@
 r"""A lower bound by Lagrangian relaxation, with prices for lines at stations; fast at every size.
 
-Constraints (2) and (5) of `program` are dropped, as is part of (6) if orders may be split over
-stations; (1) is applied to all stations together; and (8) is replaced by prices: covering a line l
-at station s costs :math:`\pi_{ls} \ge 0`, and a pod called to s earns the prices of what it could
-supply, including :math:`\sigma_{sk}` for each unit of shortage that it could ease. Let R be the
-number of free robots and :math:`cost_{ps}` the cost of calling pod p to station s; the other
-symbols are those of `data`. For all prices,
+Constraints (2) and (5) of `program` are dropped, as is a part of (6) if orders may be split over
+stations. Constraint (1) is applied to all stations together. Constraint (8) is replaced by prices:
+covering line l at station s costs :math:`\pi_{ls} \ge 0`, and a pod called to s earns the prices of
+the lines that it could cover and :math:`\sigma_{sk}` for each unit of shortage that it could ease.
+Let R be the number of free robots and :math:`cost_{ps}` the cost of calling pod p to station s; the
+other symbols are those of the module `data`. For all prices, a lower bound is
 
 .. math::
 
     & \textstyle\sum_p \min(0, \min_s (cost_{ps}
         - \sum_l \min(1, a_{pk(l)} / q_l)\, \pi_{ls}
         - \sum_k \min(a_{pk}, shortage_{sk})\, \sigma_{sk}))
-      \quad \text{(of the pods that need a robot, the best R)} \\
+      \quad \text{(of the pods that need a robot, only the R smallest terms)} \\
     & + \textstyle\sum_{s,k} shortage_{sk}\, \sigma_{sk}
       - \sum_{l,s} \min(1, surplus_{sk(l)} / q_l)\, \pi_{ls}
-      + \text{orders}(\pi), \qquad 0 \le \sigma_{sk} \le open\_unit
+      + \text{orders}(\pi), \qquad 0 \le \sigma_{sk} \le open\_unit.
 
-is a lower bound. Here orders(π) is the least total cost of orders and empty slots at these prices:
-each order gets a slot, becomes a prospect, or neither, and at most as many orders get slots as all
-stations together have free. If a pod needs a robot, its cost includes the trip of the nearest free
-robot. Initially, the price of a line at a station is the least that a pod with its SKU costs per
-line that this pod could cover. Prices are improved by subgradient steps of Polyak's length (Polyak
-1969), which aim at the objective of a known decision.
+Here orders(π) is the least total cost of orders and empty slots at these prices. Each order gets a
+slot, becomes a prospect, or neither, and the number of orders that get slots is limited by the
+total number of free slots of all stations. If a pod needs a robot, its cost includes the trip of
+the nearest free robot.
+
+Initially, the price of a line at a station is the lowest cost per line of the pods that hold its
+SKU: the cost of calling a pod, divided by the number of lines that the pod could cover. Subgradient
+steps improve the prices. Their length is that of Polyak (1969), with the objective of a known
+decision as the target value.
 """
 
 from __future__ import annotations
@@ -56,8 +59,8 @@ def bound(data: PileOn, upper: float, iterations: int = ITERATIONS) -> float:
     data
         The input.
     upper
-        Objective of a feasible decision, at which the steps aim. It affects only the quality of the
-        bound.
+        Objective of a feasible decision, the target value of the steps. It affects only the quality
+        of the bound, not its validity.
     iterations
         Number of subgradient steps. Default `ITERATIONS`.
 
@@ -88,7 +91,7 @@ def bound(data: PileOn, upper: float, iterations: int = ITERATIONS) -> float:
 def bounded(
     data: PileOn, found: Solution[Assignment], iterations: int = ITERATIONS, gap: float = 0.0
 ) -> Solution[Assignment]:
-    """Add the bound, and the status that follows from it, to a solution.
+    """Replace the bound of a solution by that of the function `bound`, and update its status.
 
     Parameters
     ----------
@@ -109,7 +112,7 @@ def bounded(
 
 @dataclass(frozen=True)
 class _Orders:
-    """The cheapest treatment of all orders: its cost, and which lines it covers where (L, S)."""
+    """The cheapest assignment of all orders: its cost, and the lines covered, shape (L, S)."""
 
     cost: float
     magnitude: float
@@ -137,7 +140,7 @@ class _Dual:
         self.priced: Flags = (spare < 1.0) & (data.slots > 0)
 
     def start(self) -> tuple[Floats, Floats]:
-        """Prices that no pod earns more from than it costs: equal shares of what it brings."""
+        """Return initial prices at which no pod earns more than it costs: equal shares per line."""
         data, weights = self.data, self.data.weights
         most = (
             weights.empty_slot
@@ -153,7 +156,7 @@ class _Dual:
         return np.where(self.priced, price, 0.0), np.zeros(self._short.size)
 
     def value(self, price: Floats, relief: Floats) -> tuple[float, Floats, Floats]:
-        """The bound, rounded down, and its subgradient by line prices and by shortage prices."""
+        """Return the bound, lowered for rounding, and its subgradients by both kinds of prices."""
         data = self.data
         earned = self._brings @ price + (self._eases * relief) @ self._at
         called = self._called(self._cost - earned)
@@ -185,7 +188,7 @@ class _Dual:
         return called
 
     def _treat(self, price: Floats) -> _Orders:
-        """The cheapest treatment of every order within all slots together."""
+        """Return the cheapest assignment of all orders, with the slots of all stations pooled."""
         data, weights = self.data, self.data.weights
         open_at = np.flatnonzero(data.slots > 0)
         covered = np.zeros(price.shape)

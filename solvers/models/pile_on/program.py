@@ -1,19 +1,30 @@
 r"""The pile-on models as an integer linear program, for every back end.
 
-Columns (all binary except v) are x_ps: pod p is called to station s; y_os: order o takes a slot at
-s; z_ls: line l is covered at s; g_os: order o is a prospect at s (could be filled there, but gets
-no slot); e_o: order o is complete; w_o: order o is started, that is, has a slot; b_rp: robot r
-fetches pod p; v_sk: number of units of SKU k, open at s, that stay without stock. C_s is the number
-of free slots.
+The columns, all binary except v, are
 
-In `Variant.WHOLE` an order is covered as a whole: z_ls = y_os and e_o = sum_s y_os, so that only x,
-y, g, b, v remain. That is the model M1G of Jiao et al. 2025 in another form: y + g replaces its
-columns h (order could be filled; its constraint y <= h then always holds), C_s - sum_o y_os
-replaces its columns u_s (empty slots), and its link columns d are left out, because the constraints
-"2 d_ops <= y_os + x_ps, x_ps <= sum_o d_ops" say only that a called pod shares a SKU with an order
-placed at its station, which is (5). There is one true difference: M1G also rewards prospects at
-stations without free slots (only the leftovers of inbound pods can serve them); here columns g
-exist only if C_s > 0.
+- x_ps: pod p is called to station s;
+- y_os: order o takes a slot at station s;
+- z_ls: line l is covered at station s;
+- g_os: order o is a prospect at station s (it could be filled there, but gets no slot);
+- e_o: order o is complete;
+- w_o: order o is started (it has a slot);
+- b_rp: robot r fetches pod p;
+- v_sk: number of units of open demand for SKU k at station s that no pod covers.
+
+C_s is the number of free slots of station s; the other symbols are those of the module `data`.
+
+In `Variant.WHOLE`, orders are covered only in full: z_ls = y_os and e_o = sum_s y_os, so that only
+the columns x, y, g, b and v remain. This is the model M1G of Jiao et al. 2025 in another form:
+
+- y + g replaces the columns h of M1G (order could be filled), so that the constraint y <= h always
+  holds;
+- C_s - sum_o y_os replaces the columns u_s of M1G (empty slots);
+- the columns d of M1G are left out. Their constraints, 2 d_ops <= y_os + x_ps and
+  x_ps <= sum_o d_ops, only say that a called pod shares a SKU with an order placed at its station;
+  (5) says the same.
+
+One difference remains: M1G also rewards prospects at stations without free slots, which only
+the leftover stock of inbound pods can serve. Here, columns g exist only if C_s > 0.
 
 .. math::
 
@@ -33,9 +44,9 @@ exist only if C_s > 0.
                + \textstyle\sum_p \min(q_l, a_{pk}) x_{ps}
 
 In (7), the last sum is at most 1 in `Variant.SPLIT_BOTH` and equal to w_o in
-`Variant.SPLIT_STATIONS`. Constraint (8) is our addition. Every integer solution satisfies it. In
-the relaxation, (2) lets a small fraction of a well-stocked pod cover a whole line; (8) forbids this
-and so makes the bound tight.
+`Variant.SPLIT_STATIONS`. Constraint (8), with a similar constraint on v, is our addition. Every
+integer solution satisfies it. In the relaxation, (2) lets a small fraction of a well-stocked pod
+cover a whole line; (8) forbids this and so tightens the bound.
 """
 
 from __future__ import annotations
@@ -59,7 +70,7 @@ from rmfs.solvers.models.solution import Limits, Solution, Status
 def formulate(
     data: PileOn, candidates: Candidates, *, strengthen: bool = True
 ) -> Formulation[Assignment]:
-    """Formulate the program of an input.
+    """Formulate a pile-on model as an integer program.
 
     Parameters
     ----------
@@ -112,7 +123,7 @@ def solve_program(
     data
         The input.
     limits, seed
-        As for the back end.
+        Passed to the back end.
     start
         A feasible decision to start from; None: the empty decision.
     candidates
@@ -123,7 +134,7 @@ def solve_program(
 
     Returns
     -------
-    The solution; it always has values.
+    The solution. It always has values, at worst those of the start.
     """
     first = nothing(data) if start is None else start
 
@@ -154,7 +165,7 @@ class _Places:
         return cls(entry, np.searchsorted(place[entry], bounds))
 
     def of(self, place: Integers) -> tuple[Integers, Integers]:
-        """For each listed place its entries: positions in the list, and entries, side by side."""
+        """Return the entries of each listed place: its position in the list, and the entry."""
         count = self.start[place + 1] - self.start[place]
         position = np.repeat(np.arange(place.size), count)
         first = np.repeat(self.start[place] - np.cumsum(count) + count, count)
@@ -163,7 +174,7 @@ class _Places:
 
 @dataclass(frozen=True)
 class _Held:
-    """What the pods of the calls bring of the wanted SKUs: call, SKU and units per entry."""
+    """Stock of wanted SKUs that called pods would bring: call, SKU and units per entry."""
 
     call: Integers
     sku: Integers
@@ -187,7 +198,7 @@ def _slot_rows(builder: ProgramBuilder, data: PileOn, columns: Columns) -> None:
 def _supply_rows(
     builder: ProgramBuilder, data: PileOn, columns: Columns, held: _Held, strengthen: bool
 ) -> None:
-    """(2): per station and SKU, covered lines and prospects fit the stock that is or will be."""
+    """(2): per station and SKU, covered lines and prospects need stock that is there or comes."""
     line_place = columns.at[columns.place] * data.skus + data.line_sku[columns.line]
     asking = np.bincount(line_place, minlength=data.stations * data.skus)
     # Where one line alone asks for a SKU, (8) says the same and more.
@@ -271,7 +282,7 @@ def _order_rows(builder: ProgramBuilder, data: PileOn, columns: Columns) -> None
 
 
 def _cover_rows(builder: ProgramBuilder, data: PileOn, columns: Columns) -> None:
-    """(6) and (7): how the lines of an order go with its slots."""
+    """(6) and (7): how the covered lines of an order depend on its slots."""
     variant = data.variant
     if variant is Variant.WHOLE:
         return
@@ -297,7 +308,7 @@ def _cover_rows(builder: ProgramBuilder, data: PileOn, columns: Columns) -> None
 
 
 def _strong_line_rows(builder: ProgramBuilder, data: PileOn, columns: Columns, held: _Held) -> None:
-    """(8): a covered line needs pods that hold its SKU, counted no higher than the line asks."""
+    """(8): a covered line needs pods with its SKU, each counted up to the units of the line."""
     place = columns.at[columns.place] * data.skus + data.line_sku[columns.line]
     surplus, units = data.surplus.ravel()[place], data.line_units[columns.line]
     lines = np.flatnonzero(surplus < units)
@@ -318,7 +329,7 @@ def _strong_line_rows(builder: ProgramBuilder, data: PileOn, columns: Columns, h
 def _strong_shortage_rows(
     builder: ProgramBuilder, data: PileOn, columns: Columns, held: _Held
 ) -> None:
-    """(8) for open demand: what is not left open needs pods, each counted up to the need."""
+    """(8) for shortages: an eased shortage needs pods, each counted up to the shortage."""
     units = data.shortage[columns.short_station, columns.short_sku]
     row, entry = held.places.of(columns.short_station * data.skus + columns.short_sku)
     builder.rows(

@@ -1,8 +1,8 @@
 """Lower bounds on the pile-on models from the linear relaxation (cvxpy, Clarabel).
 
-The program with constraint (8) is relaxed over all pairs; `safe_bound` computes the bound from the
-duals and rounds it down. The method suits small and medium sites. At a large site, the matrices
-that the interior-point method factorises do not stay sparse, and the bound that CP-SAT proves on
+The program, including constraint (8), is relaxed over all pairs; `safe_bound` computes a valid
+bound from the dual values. The method suits small and medium sites. At a large site, the matrices
+that the interior-point method factorises do not stay sparse; there, the bound that CP-SAT proves on
 the full program (`cp_sat.solve` without candidates) is as good and much faster to obtain.
 """
 
@@ -16,7 +16,7 @@ from rmfs.solvers.models.solution import NO_LIMITS, Limits
 
 
 class PileOnRelaxation:
-    """Relaxations of a sequence of inputs, compiled anew only when their sparsity pattern changes.
+    """Solves linear relaxations of successive inputs; compiles only if the matrix pattern changes.
 
     The pattern (the positions of the nonzeros) usually stays the same as long as the same pods hold
     SKUs of the same lines, even if costs, weights, quantities or slots change.
@@ -32,7 +32,7 @@ class PileOnRelaxation:
         self._compiled: LinearRelaxation | None = None
 
     def solve(self, data: PileOn, limits: Limits = NO_LIMITS) -> Relaxation:
-        """Relax and solve an input.
+        """Solve the linear relaxation of an input.
 
         Parameters
         ----------
@@ -43,8 +43,7 @@ class PileOnRelaxation:
 
         Returns
         -------
-        The column values of the relaxation, and the bound; it is valid whatever the solver's final
-        status.
+        The solution of the relaxation, with a bound that is valid even if the solver failed.
         """
         program = formulate(data, everything(data)).program
         if self._compiled is None or not self._compiled.fits(program):
@@ -54,7 +53,7 @@ class PileOnRelaxation:
 
 
 def bound(data: PileOn, limits: Limits = NO_LIMITS) -> float:
-    """Lower bound on the objective of every decision.
+    """Return a lower bound on the objective of every decision.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""Smaller inputs of the same kind: without irrelevant pods and SKUs, or for a few stations only.
+"""Smaller inputs derived from a full one: without irrelevant pods and SKUs, or for a few stations.
 
-`Compact` and `Part` also turn a decision of the small input into one of the full input.
+`Compact` and `Part` hold such an input, and convert decisions between it and the full input.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Compact:
     data, candidates
         The small input, and its candidate pairs.
     pods
-        Pods of the small input in the numbering of the full input.
+        Index in the full input of each pod of the small input.
     """
 
     full: PileOn
@@ -43,7 +43,7 @@ class Compact:
     def shrink(self, values: Assignment) -> Assignment:
         """Turn a decision of the full input into one of the small input.
 
-        The decision may use candidate pairs only.
+        The decision must use only candidate pairs.
         """
         return replace(
             values,
@@ -53,9 +53,10 @@ class Compact:
 
 
 def compact(data: PileOn, candidates: Candidates) -> Compact:
-    """Keep the wanted SKUs, and the pods that may be called, are inbound or are bound to a robot.
+    """Remove irrelevant pods and SKUs from an input.
 
-    A SKU is wanted if there is an order line or a shortage of it.
+    The result contains the SKUs for which there is an order line or a shortage, and the pods that
+    may be called, are inbound or are bound to a robot.
 
     Parameters
     ----------
@@ -89,21 +90,21 @@ def compact(data: PileOn, candidates: Candidates) -> Compact:
 
 @dataclass(frozen=True)
 class Part:
-    """The problem of a few stations, with the decisions of all others fixed.
+    """The problem of a few stations, with the decisions of all other stations fixed.
 
     Parameters
     ----------
     full
         The full input.
     values
-        The decision of the full input; outside the part it stays fixed.
+        The decision of the full input, which stays fixed outside the part.
     data, candidates
         The input of the part, and its candidate pairs.
     stations, orders, robots
-        The stations, orders and robots of the part, in the numbering of the full input.
+        Indices in the full input of the stations, orders and robots of the part.
     kept
-        Whether a pod called to these stations stays called because a fixed decision needs it, shape
-        (P,).
+        Whether a pod that `values` calls to one of these stations stays called, because an order or
+        prospect that stays fixed needs it, shape (P,).
     """
 
     full: PileOn
@@ -117,11 +118,11 @@ class Part:
 
     @property
     def lines(self) -> Integers:
-        """The lines of the part's orders, in the numbering of the full input."""
+        """Indices in the full input of the lines of the part's orders."""
         return np.flatnonzero(np.isin(self.full.line_order, self.orders))
 
     def start(self) -> Assignment:
-        """The decision `values`, restricted to the part."""
+        """Return the decision `values`, restricted to the part."""
         values = self.values
         robot_of = self._numbering(self.robots, self.full.robots)
         station_of = self._numbering(self.stations, self.full.stations)
@@ -136,7 +137,7 @@ class Part:
         )
 
     def merge(self, values: Assignment) -> Assignment:
-        """Combine a decision of the part with the fixed rest."""
+        """Return the decision of the full input that contains the given decision of the part."""
         slot, pod_robot = self.values.slot.copy(), self.values.pod_robot.copy()
         slot[np.ix_(self.orders, self.stations)] = values.slot
         line_station, prospect = self.values.line_station.copy(), self.values.prospect.copy()
@@ -165,13 +166,14 @@ class Part:
 def part(
     data: PileOn, candidates: Candidates, values: Assignment, stations: Integers
 ) -> Part | None:
-    """Make the part in which the decisions of a few stations are freed and all others fixed.
+    """Return the part in which the decisions of a few stations are free and all others fixed.
 
-    An order with slots both at a freed station and at another one stays as it is: its slots at the
-    freed stations remain taken, its lines covered there become open demand, and a pod called there
-    stays called if it holds a SKU of such a line. Prospects of a freed station also stay as they
-    are if such orders take all its slots. As open demand need not be covered, a decision that
-    `merge` returns may leave such a line without stock; `violations` reports this.
+    An order that has slots both at a free station and at another one stays fixed. Its slots at the
+    free stations remain taken, and its lines covered there become open demand. A pod called to a
+    free station stays called if it holds a SKU of such a line. If fixed orders take all slots of a
+    free station, the prospects of this station stay fixed, too. As open demand need not be covered,
+    a decision returned by `merge` may leave one of these lines without stock; `violations` reports
+    this.
 
     Parameters
     ----------
@@ -182,7 +184,7 @@ def part(
     values
         A feasible decision that uses candidate pairs only.
     stations
-        The stations to decide anew.
+        The free stations, whose decisions are made anew.
 
     Returns
     -------

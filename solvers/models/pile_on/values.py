@@ -1,10 +1,16 @@
 r"""A decision, its cost, and its feasibility.
 
-The objective uses x: pod called to station; t: travel cost of this call; b: robot fetches pod;
-f: travel cost of the robot to the pod; C_s: slots free before the decision; n_s: slots that the
-decision takes; v: units of open demand left uncovered; c_o: order covered in full, or a prospect;
-q_o: units of the order; z_l: line covered; worth_o: extra reward for giving the order a slot; and
-m_o: number of slots that the order takes. The other names are those of `Weights`:
+The symbols of the objective are
+
+- x_ps: pod p is called to station s, with the travel cost t_ps;
+- b_rp: robot r fetches pod p, with the travel cost f_rp;
+- C_s: number of free slots of station s; n_s: number of slots that the decision takes there;
+- v_sk: units of open demand for SKU k at station s that the decision leaves uncovered;
+- c_o: order o is covered in full, or is a prospect; q_o: its units; worth_o: extra reward for
+  giving it a slot; m_o: number of slots that it takes;
+- z_l: line l is covered; o(l): its order.
+
+The other names are those of `Weights`:
 
 .. math::
 
@@ -13,10 +19,10 @@ m_o: number of slots that the order takes. The other names are those of `Weights
     & - \sum_o (complete + unit\, q_o)\, c_o - line \sum_l z_l - \sum_o worth_o [m_o > 0]
         + open\_line \sum_{l: m_{o(l)} > 0} (1 - z_l) + part \sum_o (m_o - 1)^+
 
-where the `open_line` term belongs to `Variant.LATER` alone. With the default weights, in
-`Variant.WHOLE` and if robots are decided, this is the objective of M1G (Jiao et al. 2025, eq. 14),
-except for prospects of stations without free slots; h_o of the paper, "order could be filled", is
-c_o here.
+where the `open_line` term applies only in `Variant.LATER`. With the default weights, in
+`Variant.WHOLE` and with robots assigned, this is the objective of the model M1G (Jiao et al. 2025,
+eq. 14), except that prospects at stations without free slots are not rewarded. Here, c_o replaces
+h_o of the paper ("order could be filled").
 """
 
 from __future__ import annotations
@@ -31,7 +37,7 @@ from rmfs.solvers.models.pile_on.variant import Variant
 
 @dataclass(frozen=True)
 class Assignment:
-    """One joint decision.
+    """A joint decision on orders, pods and robots.
 
     Parameters
     ----------
@@ -40,12 +46,13 @@ class Assignment:
     line_station
         Station whose pods cover a line now, or -1, shape (L,).
     pod_station
-        Station a pod is newly called to, or -1, shape (P,).
+        Station to which a pod is newly called, or -1, shape (P,).
     pod_robot
         Robot that fetches a called pod, or -1, shape (P,).
     prospect
-        Station at which an order is a prospect, or -1, shape (O,): the station has free slots, and
-        its pods could fill the order as well, but the order gets no slot.
+        Station at which an order is a prospect, or -1, shape (O,). A prospect gets no slot,
+        although its station has free slots before the decision, and the pods of the station could
+        serve the order in full, in addition to the other orders.
     """
 
     slot: Flags
@@ -73,7 +80,7 @@ def nothing(data: PileOn) -> Assignment:
 
 
 def demand(data: PileOn, values: Assignment) -> Integers:
-    """Units that covered lines and prospects take from each station's pods, shape (S, K).
+    """Return the units that covered lines and prospects take at each station, shape (S, K).
 
     Parameters
     ----------
@@ -90,7 +97,7 @@ def demand(data: PileOn, values: Assignment) -> Integers:
 
 
 def called_supply(data: PileOn, values: Assignment) -> Integers:
-    """Units that newly called pods bring to each station, shape (S, K).
+    """Return the units that newly called pods bring to each station, shape (S, K).
 
     Parameters
     ----------
@@ -113,15 +120,15 @@ def uncovered(data: PileOn, values: Assignment) -> Integers:
     data
         The input.
     values
-        The decision. Units that it takes from pods beyond what these hold are counted as well, so
-        the result can exceed `data.shortage`.
+        The decision. If its lines and prospects take more units than the pods of a station hold,
+        the excess is included, so the result can exceed `data.shortage`.
     """
     have = data.surplus + called_supply(data, values)
     return np.maximum(data.shortage + demand(data, values) - have, 0)
 
 
 def complete(data: PileOn, values: Assignment) -> Flags:
-    """Whether all lines of an order are covered now, shape (O,).
+    """Return whether all lines of each order are covered now, shape (O,).
 
     Parameters
     ----------
@@ -137,7 +144,7 @@ def complete(data: PileOn, values: Assignment) -> Flags:
 
 
 def cost_of_calls(data: PileOn, values: Assignment) -> float:
-    """Cost of the called pods and their robots; controllers state gaps relative to this cost.
+    """Return the cost of called pods and their robots; controllers state gaps relative to it.
 
     Parameters
     ----------
@@ -155,7 +162,7 @@ def cost_of_calls(data: PileOn, values: Assignment) -> float:
 
 
 def objective(data: PileOn, values: Assignment) -> float:
-    """Return the objective of a decision, as defined by the module.
+    """Return the objective of a decision (see the module).
 
     Parameters
     ----------
@@ -181,7 +188,7 @@ def objective(data: PileOn, values: Assignment) -> float:
 
 
 def violations(data: PileOn, values: Assignment) -> list[str]:
-    """Return which constraints a decision violates.
+    """Return messages about the constraints that a decision violates.
 
     Parameters
     ----------
@@ -239,7 +246,7 @@ def _order_checks(data: PileOn, values: Assignment, parts: Integers) -> dict[str
 
 
 def _idle(data: PileOn, values: Assignment, called: Integers) -> Flags:
-    """Which of the pods are called without stock for a served line or a shortage there."""
+    """Whether each pod is called but holds nothing for a served line or a shortage there."""
     asked = data.shortage > 0
     at = np.flatnonzero(values.line_station >= 0)
     asked[values.line_station[at], data.line_sku[at]] = True

@@ -18,7 +18,7 @@ class Variant(Enum):
     """An order may take a slot with lines still open; pods called later cover them."""
 
     SPLIT_STATIONS = "split-stations"
-    """The lines of an order may be spread over stations; all of them are covered now."""
+    """The lines of an order may be spread over stations; all its lines are covered now."""
 
     SPLIT_TIME = "split-time"
     """One station covers some lines of an order; the rest stays in the backlog."""
@@ -33,7 +33,7 @@ class Variant(Enum):
 
     @property
     def leaves_backlog(self) -> bool:
-        """Whether lines may stay behind in the backlog."""
+        """Whether some lines of an order may stay in the backlog."""
         return self in (Variant.SPLIT_TIME, Variant.SPLIT_BOTH)
 
 
@@ -41,14 +41,14 @@ class Variant(Enum):
 class Weights:
     """The weights of the objective, in the unit of the travel cost.
 
-    The defaults are those of M1G (Jiao et al. 2025, with travel in metres), plus values for what
-    M1G does not have.
+    The defaults are those of the model M1G (Jiao et al. 2025), with travel in metres, plus values
+    for weights that M1G does not have.
 
     Parameters
     ----------
     travel
-        Cost per unit of travel; a called pod travels to its station, and a robot to the pod.
-        Default 1.
+        Cost per unit of travel, for the trip of a called pod to its station and that of a robot to
+        the pod. Default 1.
     visit
         Cost per called pod in addition to its travel, for example for the hand-over at the station.
         Default 0.
@@ -60,20 +60,20 @@ class Weights:
         Reward per unit of an order that is covered in full, so that large orders count for more.
         Default 0.
     prospects
-        Whether `complete` and `unit` also reward orders that get no slot but could be filled from
-        the pods that come (as in M1G), because such pods suit the next decision. Default yes.
+        Whether `complete` and `unit` also reward prospects (as in M1G): orders that get no slot but
+        could be filled from the pods that come. Such pods are useful for the next decision.
+        Default: yes.
     open_unit
         Penalty per unit of open demand (of orders already at a station) that no pod covers. Default
         1000.
     open_line
-        Penalty per line that is not covered now, of an order that gets a slot in this decision
-        (`Variant.LATER`).
-        Default 100.
+        Penalty per uncovered line of an order that gets a slot in this decision; only in
+        `Variant.LATER`. Default 100.
     line
         Reward per line covered, whatever its order. Default 0.
     part
-        Penalty per slot that an order takes beyond its first (split over stations), for the
-        consolidation of its parts. Default 100.
+        Penalty per slot that an order takes beyond its first, for the consolidation of its parts;
+        only in variants that split orders over stations. Default 100.
 
     Raises
     ------

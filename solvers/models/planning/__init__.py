@@ -1,7 +1,9 @@
-"""Planning ahead: which pods visit which station in which sequence, and what each serves.
+"""Planning several visits ahead: the sequence of pods at each station, and the lines they serve.
 
-- `greedy`: the start rule; `lns`: large neighbourhood search from its plan;
-- `cp_sat`: exact, for a few visits and about twenty orders.
+- `greedy`: the start rule;
+- `lns`: large neighbourhood search, starting from the plan of `greedy`;
+- `cp_sat`: exact, for a few visits and about twenty orders;
+- `highs`: exact; an input with 24 visits and 50 lines takes seconds.
 """
 
 from rmfs.solvers.models.methods import Methods

@@ -1,4 +1,4 @@
-"""Interface to the compiled start rule and search: conversion of the input and of the plan."""
+"""Interface to the compiled start rule and search: converts the input and the resulting plan."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 
 class Found(NamedTuple):
-    """A plan, its value (the objective with the opposite sign), and the work spent."""
+    """A plan, its value (the negative of the objective), and the work spent.
+
+    The work is the number of stock entries and lines examined.
+    """
 
     plan: Plan
     value: float
@@ -22,7 +25,10 @@ class Found(NamedTuple):
 
 
 def visits(data: Planning) -> Visits:
-    """Create the compiled rule and search for an input, without SKUs that no line asks for."""
+    """Pass an input to the compiled code; return the object that offers the rule and the search.
+
+    SKUs that no line asks for are left out.
+    """
     wanted, sku = np.unique(data.line_sku, return_inverse=True)
     stock = data.stock if len(wanted) == data.stock.shape[1] else data.stock[:, wanted]
     return Visits(

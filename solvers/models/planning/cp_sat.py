@@ -35,7 +35,7 @@ def solve(
     seed
         Seed of the solver. Default 0.
     start, pods
-        As for `greedy`; the solver starts from the plan that `greedy` returns.
+        Passed to `greedy`, from whose plan the solver starts.
     bound_steps
         Not used.
     """

@@ -25,24 +25,24 @@ class Planning:
     the order in which they arrive. New visits follow; each pod makes at most one new visit. Visits
     of a station are numbered from 0, those of pods under way included.
 
-    A line is served by a single visit. An order occupies a slot from its first visit to its last,
-    at which it *closes*. Between visits a station keeps one slot free (unless its open orders
-    occupy all slots, see `kept`), so that orders served by a single visit can pass through this
-    slot one after the other.
+    A line is served by a single visit. A waiting order occupies a slot from the first visit that
+    serves it to the last, at which it *closes*; an open order already occupies one. Between visits,
+    a station keeps one slot free for orders that are served by a single visit: they use this slot
+    one after the other. A station whose open orders occupy all slots keeps none free (see `kept`).
 
     Parameters
     ----------
     slots
-        Order slots of each station, shape (S,), 1 or more.
+        Number of order slots of each station, at least 1, shape (S,).
     coming
-        Pods under way, shape (F,), those of a station in order of arrival.
+        Pods under way, shape (F,); pods to the same station are in order of arrival.
     coming_to
         Station to which each pod of `coming` is under way, shape (F,).
     order_station
         Station at which an order is open, or -1 if it waits, shape (O,).
     order_until
-        For each open order, the number of the last visit at which a pod under way brings units for
-        it; -1 if there is none, and for waiting orders; shape (O,).
+        Number of the last visit in which a pod under way brings units reserved for the order,
+        shape (O,); -1 if there is no such visit, and for waiting orders.
     order_worth
         Reward for closing an order, in addition to the rewards for its lines, shape (O,), in s of
         robot time.
@@ -54,9 +54,9 @@ class Planning:
     stock
         Unreserved units per pod and SKU, shape (P, K).
     cost
-        Robot time of a new visit, excluding the service at the station, less the value of keeping
-        the station busy, shape (P, S), in s; inf forbids the visit and is required for pods under
-        way.
+        Cost of a new visit, shape (P, S), in s: the robot time without the service at the station,
+        minus the value of keeping the station busy. It is inf if the visit is not allowed, and must
+        be inf for pods under way.
     visits
         Maximum number of new visits per station.
     decay
@@ -172,8 +172,9 @@ class Planning:
     def kept(self) -> list[int]:
         """Number of orders that each station may keep open from one visit to the next.
 
-        This is the larger of two numbers: the station's slots minus one, and the number of its open
-        orders that have lines to plan or get units from the second or a later pod under way.
+        This is the larger of two numbers: the number of the station's slots minus one, and the
+        number of its open orders that may remain open after the first visit (orders that have lines
+        to plan, or for which the second or a later pod under way brings units).
         """
         stays = self.order_until > 0
         stays[self.line_order] = True

@@ -23,7 +23,7 @@ class Backend(Protocol):
 
     @property
     def solve(self) -> Any:
-        """Solve a program."""
+        """The function that solves a program."""
 
 
 def by_programme(
@@ -35,7 +35,7 @@ def by_programme(
     start: Plan | None,
     pods: Sequence[Sequence[int]],
 ) -> Solution[Plan]:
-    """Solve the program; the plan is never worse than that of the start rule."""
+    """Solve the integer program; the plan is never worse than that of the start rule."""
     began = time.perf_counter()
     first = greedy.solve(data, start=start, pods=pods).required
     programme = Programme(data)

@@ -26,7 +26,7 @@ def solve(
     pods: Sequence[Sequence[int]] = (),
     bound_steps: int = 0,
 ) -> Solution[Plan]:
-    """Add visits as long as they improve the plan.
+    """Build a plan by adding visits as long as they improve it.
 
     Parameters
     ----------
@@ -35,16 +35,17 @@ def solve(
     limits, seed
         Not used.
     start
-        A feasible plan whose visits are kept. Default: none.
+        A feasible plan to which visits are added. Default: none.
     pods
-        Pods of the new visits of an earlier plan, station by station. Visits that are still
-        possible are kept. Not used if `start` is given. Default: none.
+        Pods of the new visits of an earlier plan, one sequence per station. Visits are added to
+        those that are still possible. Not used if `start` is given. Default: none.
     bound_steps
         Number of steps for the bound (`prices`). Default: no bound.
 
     Returns
     -------
-    The plan, not worse than the start.
+    The plan, no worse than `start`. Which lines each visit serves is decided anew, and new visits
+    that would serve nothing are left out.
     """
     began = time.perf_counter()
     known = first_visits(data, start, pods)

@@ -1,4 +1,4 @@
-"""Exact planning by HiGHS, starting from the plan of the start rule; the relaxation is tight."""
+"""Exact planning by HiGHS, starting from the plan of the start rule."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def solve(
     seed
         Seed of the solver. Default 0.
     start, pods
-        As for `greedy`; the solver starts from the plan that `greedy` returns.
+        Passed to `greedy`, from whose plan the solver starts.
     bound_steps
         Not used.
     """

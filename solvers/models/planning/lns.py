@@ -1,11 +1,11 @@
 """Neighbourhood search: visits are removed from a plan, and others inserted (Shaw 1998).
 
 Each step replaces, moves or adds a visit of a station, swaps visits of two stations, or
-redistributes what two stations serve. The pod of a new visit is the best, by a quick estimate, of a
-few pods drawn from those that could serve something. Slightly worse plans are accepted at first
-(threshold accepting, Dueck and Scheuer 1990). A step changes only what one or two stations serve,
-so its time does not depend on the number of stations. The code of the steps is compiled:
-`rmfs/traffic/src/visits`.
+redistributes the lines that two stations serve. For a new visit, a few pods are drawn from those
+that could serve something, and the best of them by a quick estimate is used. Slightly worse plans
+are accepted at first (threshold accepting, Dueck and Scheuer 1990). A step changes only what one or
+two stations serve, so its time does not depend on the number of stations. The code of the steps is
+compiled: `rmfs/traffic/src/visits`.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def solve(
     pods: Sequence[Sequence[int]] = (),
     bound_steps: int = 0,
 ) -> Solution[Plan]:
-    """Search from the plan of the start rule.
+    """Improve the plan of the start rule by a neighbourhood search.
 
     Parameters
     ----------
@@ -50,14 +50,14 @@ def solve(
     start
         A feasible plan, to which the start rule adds visits. Default: none.
     pods
-        Pods of the new visits of an earlier plan, station by station. The start rule keeps visits
-        that are still possible. Not used if `start` is given. Default: none.
+        Pods of the new visits of an earlier plan, one sequence per station. The start rule adds
+        visits to those that are still possible. Not used if `start` is given. Default: none.
     bound_steps
         Number of steps for the bound (`prices`). Default: no bound.
 
     Returns
     -------
-    The plan, no worse than the start and no worse than the start rule's plan from the same start.
+    The plan, no worse than `start`, and no worse than the plan of the start rule.
     """
     began = time.perf_counter()
     known = first_visits(data, start, pods)

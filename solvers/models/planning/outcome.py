@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from rmfs.solvers.models.planning.values import Plan
 
 NAME = "visits"
-"""Name of the back end of the start rule and of the search, which count the stock entries and lines
-that they examine as units of work."""
+"""Name of the back end of the start rule and of the search. Its work is the number of stock entries
+and lines examined."""
 
 
 def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
@@ -29,7 +29,7 @@ def better(data: Planning, plan: Plan, start: Plan | None) -> Plan:
 def solution(
     data: Planning, found: Found, start: Plan | None, bound_steps: int, began: float
 ) -> Solution[Plan]:
-    """Make a `Solution` of the plan found, or of the start if that is better.
+    """Return the better of the plan found and the start, as a `Solution`.
 
     A bound is computed if `bound_steps` is positive.
     """

@@ -1,10 +1,11 @@
-r"""A bound for inputs of any size: lines have prices, and every visit serves what pays most.
+r"""A Lagrangian bound for inputs of any size.
 
-The bound ignores slots and the rule that lines of an order must be served together. The rule that
-each line is served at most once is replaced by a price :math:`\pi_l \ge 0` (Lagrangian relaxation).
-Two problems remain: which pod makes which new visit (an assignment), and which lines of each SKU a
-visit serves with the stock of its pod (a knapsack, bounded by its relaxation); a new visit serves
-at least one line. The bound is valid for any prices; subgradient steps improve it.
+The bound ignores slots and the rule that the lines of an order must be served together. The rule
+that a line l is served at most once is replaced by a price :math:`\pi_l \ge 0`, which every visit
+that serves the line pays (Lagrangian relaxation). Two problems remain. An assignment problem
+decides which pod makes which new visit. For each visit and SKU, a knapsack problem, bounded by its
+linear relaxation, decides which lines the visit serves with the stock of its pod. Every new visit
+must serve at least one line. The bound is valid for any prices; subgradient steps improve it.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ def bound(data: Planning, value: float, steps: int) -> float:
     Parameters
     ----------
     value
-        Objective of a known plan, from which the length of the subgradient steps is computed.
+        Objective of a known plan. It determines the length of the subgradient steps, and the
+        returned bound never exceeds it.
     steps
         Number of subgradient steps; with 0 the bound is -inf.
     """
@@ -58,9 +60,10 @@ def bound(data: Planning, value: float, steps: int) -> float:
 
 
 def _line_worth(data: Planning) -> Reals:
-    """Worth of a line with its share of that of its order.
+    """Return the worth of each line plus an equal share of its order's worth, shape (L,).
 
-    An order earns its worth with its last line; its shares are earned no later.
+    The worth of an order is earned when its last line is served. Its shares are earned no later, so
+    they are discounted no more.
     """
     count = np.bincount(data.line_order, minlength=data.orders)
     shares = data.order_worth / np.maximum(count, 1)
@@ -69,7 +72,7 @@ def _line_worth(data: Planning) -> Reals:
 
 
 def _settled(data: Planning) -> float:
-    """Worth of open orders without lines left to plan."""
+    """Return the worth of the open orders that pods under way complete by themselves."""
     count = np.bincount(data.line_order, minlength=data.orders)
     done = (count == 0) & (data.order_until >= 0)
     return float((data.order_worth[done] * data.decay ** data.order_until[done]).sum())
@@ -118,7 +121,7 @@ def _taken(data: Planning, mine: Integers, net: Reals, pod: int, enough: Flags) 
 
 
 def _served(data: Planning, lines: Integers, net: Reals, pods: Integers) -> Reals:
-    """Return what each of some pods gains from lines at most, shape (p,), by its stock."""
+    """Return an upper bound on what each pod gains by serving lines from its stock, shape (p,)."""
     gain = np.zeros(len(pods))
     for sku in np.unique(data.line_sku[lines]).tolist():
         chosen = np.flatnonzero(data.line_sku[lines] == sku)

@@ -8,14 +8,15 @@ r"""The plan as an integer program.
     & c_{osv}: \text{order } o \text{ closes in this visit}, \quad
     h_{osv}: \text{order } o \text{ is kept open until the next visit}
 
-A visit uses no more units than its pod has. Of a waiting order, either all lines are served, at one
-station, or none. An order does not close before its last line is served, and the orders kept open
-fit into the slots.
+A visit uses no more units than its pod has. The lines of a waiting order are either all served, at
+one station, or none of them is served. An order does not close before its last line is served, and
+the orders kept open fit into the slots.
 
 Three kinds of rows are stated for each line or pod. Fewer, aggregated rows would define the same
-plans, but the relaxation would be much weaker (50 % from the best plan instead of 2 %). A new visit
-serves a line only if its pod has all units of the line; a pod comes only if it serves such a line;
-and an order is kept open from its first line until it closes:
+plans, but their relaxation would be much weaker: its value would differ from that of the best plan
+by 50 % instead of 2 %. The three kinds state that a new visit serves a line only if its pod has all
+units of the line; that a pod makes a visit only if the visit serves such a line; and that an order
+is kept open from the visit that serves its first line until it closes:
 
 .. math::
 
@@ -72,7 +73,7 @@ class Programme:
     # --- columns --------------------------------------------------------------------------------
 
     def _make_columns(self) -> None:
-        """Lay out the columns; each family is a dictionary from its indices."""
+        """Create the columns; each family is a dictionary from indices to a column."""
         data, column = self.data, self._build.columns
         visits = [range(first + data.visits) for first in self._first]
         self._visits_of = visits
@@ -112,14 +113,14 @@ class Programme:
         return [at] if at >= 0 else list(range(self.data.stations))
 
     def _has_use(self) -> Flags:
-        """Whether a pod has all units of some line that a station may serve, shape (P, S)."""
+        """Return whether a pod has all units of a line that a station may serve, shape (P, S)."""
         data = self.data
         at = data.order_station[data.line_order]
         mine = [(at < 0) | (at == station) for station in range(data.stations)]
         return np.array([self._enough[:, lines].any(axis=1) for lines in mine]).T
 
     def _may_serve(self, line: int, station: int, visit: int, can_come: Flags) -> bool:
-        """Whether some pod of a visit could have the units of a line."""
+        """Return whether some pod that may make a visit has all units of a line."""
         enough = self._enough[:, line]
         if visit < self._first[station]:
             return bool(enough[self.data.under_way[station][visit]])
@@ -129,13 +130,13 @@ class Programme:
 
     def _row(self, terms: list[tuple[int, int]], *, lower: float = -np.inf,
              upper: float = np.inf) -> None:  # fmt: skip
-        """Add a row of columns and coefficients; one without columns says nothing here."""
+        """Add a row of columns and coefficients; a row without columns is left out."""
         if terms:
             columns, values = zip(*terms, strict=True)
             self._rows.append((list(columns), list(values), lower, upper))
 
     def _add_rows(self) -> None:
-        """Hand the rows over, all at once."""
+        """Pass all rows to the builder in one call."""
         if self._rows:
             columns, values, lower, upper = zip(*self._rows, strict=True)
             which = np.repeat(np.arange(len(columns)), [len(row) for row in columns])
@@ -143,7 +144,10 @@ class Programme:
             self._build.rows(len(columns), entries, lower=lower, upper=upper)
 
     def _visits(self) -> None:
-        """Make one visit with one pod at a time, without gaps, none in vain."""
+        """Allow one pod per visit and one new visit per pod.
+
+        No visit is skipped, and every new visit serves a line.
+        """
         by_visit: dict[tuple[int, int], list[tuple[int, int]]] = {}
         by_pod: dict[int, list[int]] = {}
         for (s, v, p), column in self._y.items():
@@ -188,7 +192,7 @@ class Programme:
                 self._row(terms + came, upper=0)
 
     def _orders(self) -> None:
-        """Serve all lines of a waiting order at one station, or none; others once at most."""
+        """Serve all lines of a waiting order at one station, or none; other lines at most once."""
         data = self.data
         for order, lines in enumerate(self._lines_of):
             waits = data.order_station[order] < 0
@@ -215,7 +219,7 @@ class Programme:
                         self._row(closes + served, upper=0)
 
     def _keeping(self) -> None:
-        """Keep a slot from the first line of an order to its last, and no more than there are."""
+        """Keep orders open from their first line until they close, no more than allowed."""
         data = self.data
         kept: dict[tuple[int, int], list[int]] = {}
         for (order, s, v), column in self._h.items():
@@ -232,7 +236,7 @@ class Programme:
             self._row([(c, 1) for c in columns], upper=data.kept[s] - stays)
 
     def _served(self, line: int, station: int, begin: int, end: int) -> list[int]:
-        """Columns of a line at visits from `begin` to before `end`."""
+        """Return the columns of a line at the visits `begin` to `end` - 1."""
         found = ((line, station, visit) for visit in range(begin, end))
         return [self._z[key] for key in found if key in self._z]
 
@@ -241,7 +245,7 @@ class Programme:
         return [self._c[key] for key in found if key in self._c]
 
     def _settled(self) -> float:
-        """What open orders are worth for which nothing is left to plan."""
+        """Return minus the worth of the open orders that pods under way complete by themselves."""
         data = self.data
         return -sum(
             float(data.order_worth[order]) * data.decay ** int(data.order_until[order])
@@ -250,7 +254,7 @@ class Programme:
         )
 
     def name(self, names: Names) -> None:
-        """Name the columns."""
+        """Enter the name and the meaning of each column in `names`."""
         blocks: tuple[tuple[str, str, str, dict[Any, int]], ...] = (
             ("visit", "svp", "visit {v} of station {s} by pod {p}", self._y),
             ("serve", "lsv", "line_visit[{l}] = {v}", self._z),

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 def first_visits(
     data: Planning, start: Plan | None, pods: Sequence[Sequence[int]]
 ) -> list[list[int]]:
-    """Return the pods of the start's new visits, station by station.
+    """Return the pods of the new visits of `start`, one list per station.
 
-    Without a start, return those pods of an earlier plan whose visits are still possible.
+    If `start` is None, return the pods of an earlier plan (`pods`) whose visits are still possible.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def first_visits(
 
 
 def _possible(data: Planning, pods: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Leave out visits that cannot be made any more."""
+    """Return the pods, without those whose visits are no longer possible."""
     found: list[list[int]] = [[] for _ in range(data.stations)]
     seen: set[int] = set()
     for station, new in enumerate(pods):

@@ -25,12 +25,12 @@ class Plan:
     Attributes
     ----------
     pods
-        For each station, the pods of its new visits in sequence.
+        Pods of the new visits of each station, in the sequence of the visits.
     order_station
-        Station of each order, or -1 if it keeps waiting, shape (O,).
+        Station of each order, or -1 if the order keeps waiting, shape (O,).
     line_visit
-        Number of the visit, at the station of its order, that serves each line; -1 for none; shape
-        (L,).
+        Number of the visit that serves each line, at the station of the line's order; -1 if the
+        line is not served; shape (L,).
     """
 
     pods: Sequence[Sequence[int]]
@@ -45,7 +45,7 @@ def nothing(data: Planning) -> Plan:
 
 
 def objective(data: Planning, plan: Plan) -> float:
-    """Return the cost of new visits less the rewards for lines served and orders closed, in s."""
+    """Return the cost of new visits minus the rewards for served lines and closed orders, in s."""
     total = 0.0
     for station, pods in enumerate(plan.pods):
         first = len(data.under_way[station])
@@ -59,12 +59,12 @@ def objective(data: Planning, plan: Plan) -> float:
 
 
 def violations(data: Planning, plan: Plan) -> list[str]:
-    """Return what is wrong with a plan; empty if it is feasible."""
+    """Return a message for each violation found; an empty list if the plan is feasible."""
     return [*_wrong_pods(data, plan), *_wrong_orders(data, plan), *_wrong_visits(data, plan)]
 
 
 def _is_closed(data: Planning, plan: Plan) -> NDArray[np.bool_]:
-    """Whether an order has a station and nothing of it is left at the end, shape (O,)."""
+    """Return whether each order is closed by the end of the plan, shape (O,)."""
     closed: NDArray[np.bool_] = plan.order_station >= 0
     closed = closed & (_last_visit(data, plan) >= 0)
     closed[data.line_order[plan.line_visit < 0]] = False
@@ -72,7 +72,7 @@ def _is_closed(data: Planning, plan: Plan) -> NDArray[np.bool_]:
 
 
 def _last_visit(data: Planning, plan: Plan) -> Integers:
-    """Last visit with units for each order, -1 for none, shape (O,)."""
+    """Return the last visit with units for each order, or -1, shape (O,)."""
     last = data.order_until.copy()
     np.maximum.at(last, data.line_order, plan.line_visit)
     return last

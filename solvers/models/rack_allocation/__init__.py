@@ -1,4 +1,4 @@
-"""Multi-station rack allocation: assign orders and pods to pick stations with the fewest pods."""
+"""Multi-station rack allocation: assign orders and as few pods as possible to pick stations."""
 
 from rmfs.solvers.models.methods import Methods
 from rmfs.solvers.models.rack_allocation import cp_sat, greedy, highs

@@ -1,4 +1,4 @@
-"""Rack allocation by a solver, with a bound in whole pods that a relaxation may improve."""
+"""Rack allocation by a solver, with a lower bound that is a whole number of pods."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ _TOLERANCE = 1e-4
 def solve_in_whole_pods(
     backend: Backend, data: RackAllocation, limits: Limits, seed: int, start: Allocation | None
 ) -> Solution[Allocation]:
-    """Solve the integer program, and return a bound that is a whole number of pods.
+    """Solve the integer program; the bound is a whole number of pods.
 
-    It is the best of three: the solver's bound and that of the relaxation `together`, both rounded
-    up, and `pods_needed`.
+    This bound is the greatest of three: the solver's bound, rounded up; the bound of the relaxation
+    `together`, rounded up; and `pods_needed`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""The problem: each station gets as many orders as it has slots, and pods that hold their units.
+r"""The problem: each station gets as many orders as it has slots, and pods with enough units.
 
 .. math::
 
@@ -8,8 +8,8 @@ r"""The problem: each station gets as many orders as it has slots, and pods that
 for all orders o, pods p, stations s and SKUs k, where :math:`y_{ps}` is 1 if pod p goes to station
 s, :math:`x_{os}` is 1 if order o goes to station s, and :math:`C_s` is the number of slots (Valle
 and Beasley 2021, who speak of racks and pickers). There may be more orders than slots, but every
-slot is filled. Unlike the model `rmfs.solvers.models.pile_on`, this model is static: it has no pods
-under way, no travel and no empty slots.
+slot must be filled. Unlike the model `rmfs.solvers.models.pile_on`, this model is static: it has no
+pods under way, no travel and no empty slots.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from rmfs.solvers.models.checks import integers
 
 NONE = -1
-"""Marks the station of an order or pod that is not used."""
+"""Station of an order or pod that is assigned to no station."""
 
 
 @dataclass(frozen=True)
@@ -100,8 +100,8 @@ def objective(data: RackAllocation, allocation: Allocation) -> float:
 def pods_needed(data: RackAllocation) -> float:
     """Return a lower bound on the number of pods.
 
-    It is the number of stations that must get an order with lines. Orders without lines need no
-    pod; in the best case, they fill the stations with the fewest slots.
+    The bound is the number of stations that must get an order with lines. Orders without lines need
+    no pod; in the best case, they fill the stations with the fewest slots.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def pods_needed(data: RackAllocation) -> float:
 
 
 def violations(data: RackAllocation, allocation: Allocation) -> list[str]:
-    """Return what is wrong with an allocation; empty if it is feasible.
+    """Return a message for each violation found; an empty list if the allocation is feasible.
 
     Parameters
     ----------

@@ -29,15 +29,16 @@ def solve(
     """Fill the stations one after another, in decreasing order of their numbers of slots.
 
     Until its slots are filled, a station repeatedly gets the pod that completes the most remaining
-    orders, and then the orders that its pods can serve, those with the fewest units first. If no
+    orders, and then the orders that its pods can serve, orders with fewer units first. If no
     pod completes an order, the station gets the pod that holds missing units of the most order
     lines. Pods that turn out to be unnecessary are released.
 
     Returns
     -------
-    The allocation; ties go to the lowest index. If a station could not be filled, the status is
-    INFEASIBLE if fewer orders than there are slots could be served even if each had the whole stock
-    to itself, and LIMIT otherwise. The bound is that of `pods_needed`.
+    The allocation; ties go to the lowest index. The bound is that of `pods_needed`. If a station
+    could not be filled, there is no allocation. Call an order servable if the whole stock suffices
+    for it alone: the status is then INFEASIBLE if there are fewer servable orders than slots, and
+    LIMIT otherwise.
     """
     begin = perf_counter()
     servable = (data.units <= data.stock.sum(axis=0)).all(axis=1)
@@ -59,7 +60,7 @@ def solve(
 
 
 class _Filling:
-    """Orders and pods while they are being given out."""
+    """The state of the rule: the stations of orders and pods so far."""
 
     def __init__(self, data: RackAllocation) -> None:
         self._data = data
@@ -85,7 +86,7 @@ class _Filling:
                 left -= self._data.stock[pod]
 
     def _take_orders(self, station: int, left: NDArray[np.int64]) -> int:
-        """Give the station orders that its pods can fill; returns how many slots are left."""
+        """Give the station orders that its pods can serve; return the number of slots left."""
         free = int(self._data.slots[station] - (self.order_station == station).sum())
         waiting = np.flatnonzero(self.order_station == NONE)
         for order in waiting[np.argsort(self._size[waiting], kind="stable")].tolist():
@@ -96,7 +97,10 @@ class _Filling:
         return free
 
     def _next_pod(self, left: NDArray[np.int64]) -> int:
-        """Choose the pod that completes most orders; if none does, that covers most lines."""
+        """Choose the pod that completes the most orders; `NONE` if no pod helps.
+
+        If no pod completes an order, choose the pod that holds missing units of the most lines.
+        """
         pods = np.flatnonzero(self.pod_station == NONE)
         lines = np.flatnonzero(self.order_station[self._line_order] == NONE)
         if not len(pods) or not len(lines):

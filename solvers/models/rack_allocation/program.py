@@ -7,8 +7,8 @@ largest order lines of that SKU, so
 .. math:: \sum_p \min(stock_{pk}, d_{sk})\, y_{ps} \ge \sum_o units_{ok}\, x_{os};
 
 and each SKU k of an order must be on at least one pod at the order's station: :math:`x_{os} \le
-\sum_{p \ni k} y_{ps}`. Pods without any wanted SKU, and orders that not even all pods together can
-serve, have no columns.
+\sum_{p \ni k} y_{ps}`. Orders that ask for more units of a SKU than all pods together hold have no
+columns, and neither do pods without any SKU of the other orders.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def formulate(data: RackAllocation) -> Formulation[Allocation]:
 
 
 def together(data: RackAllocation) -> LinearProgram:
-    """Formulate the program with all stations merged into one, a relaxation with few columns.
+    """Formulate the program with all stations merged into one; this is a relaxation.
 
     For each SKU k, the largest :math:`d_{sk}` of all stations s (see the module) is used, so that
     each row is implied by the sum of the rows that it replaces. If all stations have equally many
@@ -92,7 +92,7 @@ def together(data: RackAllocation) -> LinearProgram:
 
 
 def _useful(data: RackAllocation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Find the orders that stock can serve, and the pods with something they want."""
+    """Find the orders that all pods together can serve, and the pods that hold a SKU of these."""
     orders = np.flatnonzero((data.units <= data.stock.sum(axis=0)).all(axis=1))
     pods = np.flatnonzero((data.stock[:, data.units[orders].any(axis=0)] > 0).any(axis=1))
     return orders, pods
@@ -101,7 +101,7 @@ def _useful(data: RackAllocation) -> tuple[NDArray[np.int64], NDArray[np.int64]]
 def _wanted(
     data: RackAllocation, orders: NDArray[np.int64], pods: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Return units and stock of these orders and pods, for SKUs that are wanted."""
+    """Return the units of the orders and the stock of the pods, for the SKUs of the orders."""
     skus = np.flatnonzero(data.units[orders].any(axis=0))
     return data.units[np.ix_(orders, skus)], data.stock[np.ix_(pods, skus)]
 
@@ -112,7 +112,7 @@ def _program(
     slots: NDArray[np.int64],
     most: NDArray[np.int64],
 ) -> LinearProgram:
-    """State the program; `most` caps the stock that counts, shape (K, S)."""
+    """Build the program; `most` limits the units of each pod that count, shape (K, S)."""
     (orders, skus), pods, stations = units.shape, len(stock), len(slots)
     builder = ProgramBuilder()
     x = builder.columns((orders, stations))
@@ -143,7 +143,7 @@ def _program(
 
 
 def _most_wanted(units: NDArray[np.int64], slots: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the most units of each SKU that each station can ask for, shape (K, S)."""
+    """Return the maximum demand of each station for each SKU, in units, shape (K, S)."""
     largest = np.sort(units, axis=0)[::-1].cumsum(axis=0)
     totals = np.vstack([np.zeros((1, units.shape[1]), np.int64), largest])
     most: NDArray[np.int64] = totals[np.minimum(slots, len(units))].T

@@ -1,7 +1,7 @@
 """Replenishment (RPS and ROA): assign bundles to pods, and these pods to stations.
 
-The two decisions are taken together: a pod is brought to one station for all its bundles, and the
-worth of the bundles must exceed the cost of the trip.
+The two decisions are taken together: all bundles of a pod share one trip to one station, and this
+trip pays only if the bundles are worth more than it costs.
 """
 
 from rmfs.solvers.models.methods import Methods

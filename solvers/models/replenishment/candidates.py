@@ -1,4 +1,4 @@
-"""Pruning of the pods considered for each bundle; those left out are rarely worth a trip."""
+"""Pruning: only the best pods of each bundle and the nearest stations of each pod are kept."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ def best_pods(data: Replenishment, *, pods: int, stations: int) -> Replenishment
 
     For each bundle, a pod is rated by the worth of storing the bundle in it, minus a share of the
     cost of the pod's shortest trip. This share is the cost divided by the number of bundles of
-    average size that fit into the pod. A bundle that no more than `pods` pods can store keeps all
-    of them.
+    average size that fit into the pod. If at most `pods` pods can store a bundle, all of them are
+    kept.
 
     Parameters
     ----------
     data
         The problem.
     pods
-        Number of pods to keep per bundle.
+        Maximum number of pods to keep per bundle.
     stations
-        Number of stations to keep per pod.
+        Maximum number of stations to keep per pod.
 
     Returns
     -------
-    The same problem with fewer allowed pairs (bundle and pod, pod and station); of equally good
-    ones, those with the lowest index are kept. Its solutions are feasible for the full problem, but
-    its bound is not valid for the full problem.
+    The problem with fewer allowed pairs of bundle and pod, and of pod and station; ties go to the
+    lowest index. The solutions of this smaller problem are feasible for the full problem, but its
+    bounds do not hold for the full problem.
     """
     trip_s = data.trip_s.min(axis=1, initial=np.inf)
     mean_space = max(float(data.space.mean()), 1e-9) if len(data.space) else 1.0
@@ -45,7 +45,7 @@ def best_pods(data: Replenishment, *, pods: int, stations: int) -> Replenishment
 
 
 def _first(values: NDArray[np.float64], count: int) -> NDArray[np.bool_]:
-    """Mark the least values of each row; ties go to the lowest index."""
+    """Mark the `count` least values of each row; ties go to the lowest index."""
     order = np.argsort(values, axis=1, kind="stable")[:, :count]
     marked = np.zeros(values.shape, bool)
     np.put_along_axis(marked, order, values=True, axis=1)

@@ -4,13 +4,15 @@ r"""The problem: waiting bundles, and pods and stations with free space.
 
     \min \sum_{ps} trip_{ps}\, y_{ps} + \sum_b leave_b\, l_b - \sum_{bp} worth_{bp}\, x_{bp}
 
-Every bundle b goes to one pod p or is left, :math:`\sum_p x_{bp} + l_b = 1`. A pod that gets a
-bundle is brought to one station s, :math:`x_{bp} \le \sum_s y_{ps} \le 1`. The bundles of a pod fit
-into its free space, and the bundles of all pods brought to a station fit into the free space of the
-station. The worth of a bundle in a pod is the robot time that the bundle will save there
-(`bundle_worth_s`), so cost and worth are both in seconds, and a trip is made if its bundles save
-more than it costs. The waiting bundles are rated one by one; the mutual benefit of two new bundles
-in the same pod is not counted.
+The variable :math:`x_{bp}` is 1 if bundle b is stored in pod p, :math:`l_b` is 1 if bundle b is
+left for later, and :math:`y_{ps}` is 1 if pod p is brought to station s. Every bundle is stored in
+one pod or left: :math:`\sum_p x_{bp} + l_b = 1`. A pod that gets a bundle is brought to one
+station: :math:`x_{bp} \le \sum_s y_{ps} \le 1`. The bundles of a pod fit into its free space, and
+the bundles of all pods brought to a station fit into the free space of the station.
+
+The worth of a bundle in a pod is the robot time that the bundle will save there (`bundle_worth_s`).
+The cost of a trip is its robot time, so worth and cost can be compared. Bundles are rated one by
+one; the mutual benefit of two new bundles in the same pod is not counted.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from rmfs.solvers.models.checks import costs, reals
 
 LEFT = -1
-"""Stands for no pod (of a bundle left for later) or no station (of a pod that is not brought)."""
+"""Pod of a bundle that is left for later, and station of a pod that is not brought."""
 
 PARTS = 16
 """Number of parts per space unit; spaces are rounded to whole parts."""
@@ -40,19 +42,19 @@ class Replenishment:
     Parameters
     ----------
     worth_s
-        Robot time that storing a bundle in a pod saves later, shape (B, P), in s; -inf where the
-        bundle may not be stored.
+        Robot time that storing a bundle in a pod saves later, shape (B, P), in s; -inf if the
+        bundle may not be stored in the pod.
     leave_s
-        Cost of leaving each bundle for later, shape (B,), in s; +inf if it must be stored.
+        Cost of leaving each bundle for later, shape (B,), in s; +inf if the bundle must be stored.
     space
-        Space units of each bundle, shape (B,).
+        Size of each bundle, shape (B,), in space units.
     pod_space
-        Space units free in each pod, shape (P,).
+        Free space in each pod, shape (P,), in space units.
     trip_s
-        Robot time to bring each pod to each station and back, shape (P, S), in s; +inf where the
-        pod may not go, 0 where the pod is going anyway.
+        Robot time to bring each pod to each station and back, shape (P, S), in s; +inf if the pod
+        may not go to the station, 0 if the pod goes there anyway.
     station_space
-        Space units free at each station, shape (S,).
+        Free space at each station, shape (S,), in space units.
 
     Raises
     ------
@@ -99,14 +101,14 @@ def _parts(rounding: np.ufunc, field: str, value: ArrayLike, count: int) -> NDAr
 
 @dataclass(frozen=True)
 class Stocking:
-    """Where bundles and pods go.
+    """The pod of each bundle and the station of each pod.
 
     Attributes
     ----------
     pod
-        Pod of each bundle, or `LEFT`, shape (B,).
+        Pod of each bundle, or `LEFT` if the bundle is left for later, shape (B,).
     station
-        Station of each pod, or `LEFT`, shape (P,).
+        Station of each pod, or `LEFT` if the pod is not brought, shape (P,).
     """
 
     pod: NDArray[np.int64]
@@ -114,14 +116,14 @@ class Stocking:
 
 
 def objective(data: Replenishment, stocking: Stocking) -> float:
-    """Return the cost of trips and of bundles left minus the worth of stored bundles, in s.
+    """Return the cost of trips and of leaving bundles, minus the worth of stored bundles, in s.
 
     Parameters
     ----------
     data
         The problem.
     stocking
-        Where bundles and pods go.
+        The pod of each bundle and the station of each pod.
     """
     stored, brought = stocking.pod != LEFT, stocking.station != LEFT
     trips = data.trip_s[np.flatnonzero(brought), stocking.station[brought]]
@@ -130,14 +132,14 @@ def objective(data: Replenishment, stocking: Stocking) -> float:
 
 
 def violations(data: Replenishment, stocking: Stocking) -> list[str]:
-    """Return what is wrong with a stocking; empty if it is feasible.
+    """Return a message for each violation found; an empty list if the stocking is feasible.
 
     Parameters
     ----------
     data
         The problem.
     stocking
-        Where bundles and pods go.
+        The pod of each bundle and the station of each pod.
     """
     pods, stations = data.trip_s.shape
     pod, station = stocking.pod, stocking.station

@@ -1,4 +1,4 @@
-"""Bring pod after pod, each time the pod with the greatest gain (of bundles, minus trip cost)."""
+"""Bring one pod after the other, always the pod whose trip has the greatest gain."""
 
 from __future__ import annotations
 
@@ -29,17 +29,20 @@ def solve(
 ) -> Solution[Stocking]:
     """Repeatedly bring the pod of greatest gain, with the bundles that gain most per space unit.
 
+    The gain of a bundle in a pod is its worth there plus the cost of leaving it; if the bundle must
+    be stored, the gain is a large number. The gain of a pod is that of its bundles minus the cost
+    of its trip.
+
     Gains are expected to decrease as bundles and space are used up. A gain computed earlier is
     therefore treated as an upper bound, and only the pods at the top of a heap are rated again. The
-    initial rating of a pod is the gain that it would have if bundles could be divided. Storing a
-    bundle that must be stored counts as a large gain.
+    initial rating of a pod is the gain that it would have if bundles could be divided.
 
     Returns
     -------
-    Where bundles and pods go; ties go to the pod and station with the lowest index. The status
-    is LIMIT if a bundle that must be stored is left, and INFEASIBLE if no pod may take such a
-    bundle. For the bound, every bundle independently chooses its best pod or is left, and trips
-    cost nothing.
+    The pod of each bundle and the station of each pod; ties go to the lowest index. The status is
+    LIMIT if a bundle that must be stored is left, and INFEASIBLE if no pod may store such a bundle.
+    The bound lets every bundle choose its best pod or be left, regardless of the other bundles and
+    of the cost of trips.
     """
     begin = perf_counter()
     best = np.minimum(-data.worth_s.max(axis=1, initial=-math.inf), data.leave_s)
@@ -56,7 +59,7 @@ def solve(
 
 
 class Filling:
-    """The state of the heuristic: bundles, pods and stations with their remaining space.
+    """The state of the heuristic: assigned bundles and pods, and the remaining space of stations.
 
     Parameters
     ----------
@@ -66,7 +69,7 @@ class Filling:
     Attributes
     ----------
     scored
-        Number of pairs of bundle and pod scored so far.
+        Number of pairs of bundle and pod that have been rated so far.
     """
 
     def __init__(self, data: Replenishment) -> None:
@@ -83,7 +86,7 @@ class Filling:
         self.scored = data.worth_s.size
 
     def run(self) -> Stocking:
-        """Bring pods until no pod has a gain."""
+        """Bring pods until no pod has a positive gain, and return the stocking."""
         pods, stations = np.nonzero(np.isfinite(self._data.trip_s))
         most = (self._most()[pods] - self._data.trip_s[pods, stations]).tolist()
         options = zip(most, pods.tolist(), stations.tolist(), strict=True)
@@ -103,14 +106,14 @@ class Filling:
         return Stocking(self._pod, self._station)
 
     def bring(self, pod: int, station: int, bundles: list[int]) -> None:
-        """Bring a pod to a station for some bundles.
+        """Bring a pod to a station and store bundles in it.
 
         Parameters
         ----------
         pod, station
-            The pod, not brought yet, and the station.
+            The pod, which has not been brought yet, and the station.
         bundles
-            Bundles that are not stored yet and fit.
+            Bundles that are not stored yet; together they fit into the pod and the station.
         """
         self._station[pod] = station
         self._pod[bundles] = pod
@@ -124,8 +127,8 @@ class Filling:
         pod, station
             The pod and the station.
         wanted
-            Bundles in the order in which the pod should take them; those already stored are
-            passed over.
+            Bundles in the order in which the pod should take them. Bundles that are already stored,
+            or do not fit, are skipped.
         """
         room = min(float(self._data.pod_space[pod]), self._room[station])
         total, chosen = -float(self._data.trip_s[pod, station]), []
@@ -138,7 +141,7 @@ class Filling:
         return total, chosen
 
     def _gains(self) -> NDArray[np.float64]:
-        """Return what storing gains over leaving, at least 0, shape (B, P)."""
+        """Return the gain of storing each bundle in each pod, at least 0, shape (B, P)."""
         data = self._data
         must = np.isinf(data.leave_s)
         finite = np.abs(data.worth_s[np.isfinite(data.worth_s)]).sum()
@@ -150,7 +153,7 @@ class Filling:
         return np.where(fits, np.maximum(gain, 0.0), 0.0)
 
     def _most(self) -> NDArray[np.float64]:
-        """Return what each pod gains at most, if bundles could be cut, without its trip."""
+        """Return the gain of each pod if bundles could be divided and trips cost nothing."""
         data = self._data
         gain = np.take_along_axis(self._gain, self._order, axis=0)
         space = data.space[self._order]

@@ -20,12 +20,13 @@ def polished(data: Replenishment, stocking: Stocking) -> Stocking:
     data
         The problem.
     stocking
-        A stocking within the capacities of pods and stations; bundles that must be stored may be
-        left.
+        A stocking that respects the capacities of pods and stations. It may leave bundles that must
+        be stored.
 
     Returns
     -------
-    A stocking that costs no more and stores at least as many of the bundles that must be stored.
+    A stocking with no higher cost, in which at least as many of the bundles that must be stored are
+    stored.
     """
     moves = _Moves(data, stocking)
     while moves.move_bundles() or moves.drop_pods():
@@ -34,7 +35,7 @@ def polished(data: Replenishment, stocking: Stocking) -> Stocking:
 
 
 class _Moves:
-    """A stocking and the room that it leaves."""
+    """A stocking and the free space that it leaves in pods and at stations."""
 
     def __init__(self, data: Replenishment, stocking: Stocking) -> None:
         self._data = data
@@ -55,7 +56,7 @@ class _Moves:
         return float(self._left_worth[bundle] if pod == LEFT else self._data.worth_s[bundle, pod])
 
     def move_bundles(self) -> bool:
-        """Give each bundle the pod brought that it is worth most in; say whether any moved."""
+        """Move bundles to the brought pods where they are worth most; return whether any moved."""
         data, moved = self._data, False
         brought = np.flatnonzero(self.station != LEFT)
         at = self.station[brought]
@@ -73,7 +74,7 @@ class _Moves:
         return moved
 
     def drop_pods(self) -> bool:
-        """Leave pods alone whose bundles do not pay for the trip; say whether any was dropped."""
+        """Drop trips that cost more than their bundles gain; return whether any was dropped."""
         data, dropped = self._data, False
         for pod in np.flatnonzero(self.station != LEFT).tolist():
             bundles = np.flatnonzero(self.pod == pod).tolist()

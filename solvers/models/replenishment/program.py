@@ -9,9 +9,9 @@ station (w):
     \sum_b space_b\, x_{bp} \le \sum_s w_{ps}, \\
     w_{ps} \le \min(podspace_p, stationspace_s)\, y_{ps}, \quad \sum_p w_{ps} \le stationspace_s
 
-Giving x an index s as well, instead of having w, would be equivalent but would multiply the columns
-x by the number of stations. Spaces are counted in sixteenths of a space unit, so all numbers except
-the costs are integers.
+An equivalent program without w would give x a third index s, which would multiply the number of
+columns x by the number of stations. Spaces are counted in sixteenths of a space unit, so all
+numbers except the costs are integers.
 """
 
 from __future__ import annotations
@@ -36,14 +36,15 @@ from rmfs.solvers.models.replenishment.data import (
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns of the program in order: x, y, w, l.
+    """The columns of the program, in the order x, y, w, l.
 
     Attributes
     ----------
     bundle, pod
-        Bundle and pod of each pair x, shape (X,).
+        Bundle and pod of each column x, shape (X,).
     brought, station
-        Pod and station of each y and of each w, shape (Y,).
+        Pod and station of each column y; the columns w have the same pairs in the same order; shape
+        (Y,).
     """
 
     bundle: NDArray[np.int64]
@@ -53,7 +54,7 @@ class Columns:
 
     @classmethod
     def of(cls, data: Replenishment) -> Columns:
-        """List the columns of the allowed pairs.
+        """Return the columns for all allowed pairs of bundle and pod, and of pod and station.
 
         Parameters
         ----------
@@ -77,11 +78,11 @@ def program(data: Replenishment, columns: Columns, *, whole: bool) -> LinearProg
     data
         The problem.
     columns
-        Its columns.
+        The columns of the program.
     whole
-        Whether loads are declared integer. The optimum is the same, as integer loads exist for all
-        feasible integer x and y; CP-SAT requires the declaration, while branch and bound is ten
-        times as fast without it.
+        Whether the loads w must be integers. This does not change the optimum, because integer
+        loads exist for all feasible integer x and y. CP-SAT requires integer loads; branch and
+        bound is ten times as fast without this requirement.
     """
     bundles, (pods, stations) = len(data.space), data.trip_s.shape
     bundle, pod, brought, station = columns.bundle, columns.pod, columns.brought, columns.station
@@ -125,9 +126,9 @@ def columns_of(data: Replenishment, columns: Columns, stocking: Stocking) -> NDA
     data
         The problem.
     columns
-        Its columns.
+        The columns of the program.
     stocking
-        Where bundles and pods go.
+        The pod of each bundle and the station of each pod.
     """
     stored = stocking.pod != LEFT
     load = np.bincount(
@@ -142,16 +143,16 @@ def columns_of(data: Replenishment, columns: Columns, stocking: Stocking) -> NDA
 def stocking_of(data: Replenishment, columns: Columns, x: NDArray[np.float64]) -> Stocking:
     """Turn column values of the program into a stocking.
 
-    Pods that would be brought without a bundle stay where they are.
+    Pods without a bundle are not brought, even if the column values bring them.
 
     Parameters
     ----------
     data
         The problem.
     columns
-        Its columns.
+        The columns of the program.
     x
-        Their values.
+        The value of each column.
     """
     pairs = len(columns.bundle)
     stored = x[:pairs] > 0.5
@@ -174,7 +175,7 @@ def formulate(data: Replenishment, *, whole: bool) -> Formulation[Stocking]:
     data
         The problem.
     whole
-        Whether loads are declared integer too, for solvers that require it (see `program`).
+        Whether the loads w must be integers, too, as some solvers require (see `program`).
     """
     columns = Columns.of(data)
     return Formulation(

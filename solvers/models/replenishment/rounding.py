@@ -1,8 +1,8 @@
-"""Rounding of the relaxation: its fractions say which pods to bring, and with which bundles.
+"""Rounding of the linear relaxation: its solution suggests which pods to bring for which bundles.
 
-The relaxation is tight and is solved much faster than the integer program; its fractions are a good
-guide, and its value is a bound. This resembles fix-and-dive heuristics; the greedy rule decides
-what the fractions leave open.
+The relaxation is tight and is solved much faster than the integer program. Pods and bundles with
+large values in its solution are chosen first, as in fix-and-dive heuristics. The greedy rule then
+brings further pods. The value of the relaxation is a bound.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from rmfs.solvers.models.replenishment.program import Columns, program
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
 _SOME = 1e-6
-"""Fractions below this are ignored as noise."""
+"""Column values up to this are treated as zero."""
 
 
 def solve(
@@ -31,15 +31,16 @@ def solve(
     seed: int = 0,
     start: Stocking | None = None,
 ) -> Solution[Stocking]:
-    """Bring the pods with the largest fractions in the relaxation, and their bundles.
+    """Bring the pods with the largest values in the relaxation, and then pods by the greedy rule.
 
     Parameters
     ----------
     data
         The problem.
     limits
-        `iterations` limits the simplex iterations of the relaxation. If they do not suffice, the
-        greedy rule decides alone, and the bound is weak.
+        `iterations` limits the simplex iterations for the relaxation. If this limit is reached, the
+        greedy rule decides alone, and the bound is weak. `gap` is the relative gap up to which the
+        status is OPTIMAL.
     seed
         Seed of the solver. Default 0.
     start
@@ -47,8 +48,9 @@ def solve(
 
     Returns
     -------
-    Where bundles and pods go; ties go to the lowest index. The status is LIMIT if a bundle that
-    must be stored is left. Work is counted in simplex iterations.
+    The pod of each bundle and the station of each pod; ties go to the lowest index. The status is
+    LIMIT if a bundle that must be stored is left, and INFEASIBLE if the relaxation is infeasible.
+    Work is counted in simplex iterations.
     """
     begin = perf_counter()
     columns = Columns.of(data)
@@ -78,7 +80,7 @@ def solve(
 
 
 def _follow(filling: Filling, columns: Columns, x: NDArray[np.float64]) -> None:
-    """Bring pods in the order of their fractions, unless that does not pay."""
+    """Bring pods in decreasing order of their values in the relaxation, if they have a gain."""
     pairs, options = len(columns.bundle), len(columns.brought)
     put, brought = x[:pairs], x[pairs : pairs + options]
     wanted: dict[int, list[int]] = {}

@@ -1,21 +1,23 @@
-r"""The worth of a bundle in a pod: the robot time that its units save by raising the pile-on.
+r"""The worth of a bundle in a pod: the robot time that the bundle saves by raising the pile-on.
 
 On each visit, a pod can serve the demand for its SKUs that has accumulated since its last visit.
-Let :math:`D_k`, this demand for SKU k in units, be Poisson with mean :math:`\mu_k`. A pod with q
-units of k serves :math:`g_k(q) = E[\min(q, D_k)]` units on average, so u more units add the
-*coverage* :math:`g_k(q + u) - g_k(q)`, which is large if the SKU is in demand and scarce in the
-pod, and small if it is plentiful there. With each line of SKU k, :math:`a_{kh}` lines of SKU h are
-ordered on average (*affinity*); if the pod holds h too, these lines need no separate visit. Each
-additional unit served saves its share of the robot time of a visit:
+Let :math:`D_k` be this demand for SKU k, in units; it is assumed to be Poisson with mean
+:math:`\mu_k`. A pod with q units of SKU k serves :math:`g_k(q) = E[\min(q, D_k)]` units of the SKU
+on average. With u more units it serves :math:`g_k(q + u) - g_k(q)` more (*coverage*). The coverage
+is large if the SKU is in demand and scarce in the pod, and small if the SKU is plentiful there.
+With each line of SKU k, :math:`a_{kh}` lines of SKU h are ordered on average (*affinity*); if the
+pod also holds SKU h, these lines need no separate visit. Each additional unit served saves its
+share of the robot time of a visit, which is the time of a visit divided by the pile-on:
 
 .. math::
 
     worth_{bp} = \frac{visit}{pileon} \bigl(g_k(q_{kp} + u_b) - g_k(q_{kp})\bigr)
     \Bigl(1 + \sum_{h \in p, h \ne k} a_{kh}\Bigr)
 
-with k the SKU of bundle b and :math:`q_{kp}` the units of k in pod p. (Spread of SKUs over pods:
-Lamballais, Roy, de Koster 2020; affinity: the "Correlative" rule of RAWSim-O. Expressing both in
-robot time is our addition.)
+with k the SKU of bundle b, :math:`u_b` the units of the bundle, :math:`q_{kp}` the units of SKU k
+in pod p, and :math:`h \in p` the SKUs in pod p. (Spread of SKUs over pods: Lamballais, Roy,
+de Koster 2020; affinity: the "Correlative" rule of RAWSim-O. Expressing both in robot time is our
+addition.)
 """
 
 from __future__ import annotations
@@ -48,12 +50,12 @@ def bundle_worth_s(
     wanted_per_visit
         Mean number of units of each SKU that orders demand between two visits of a pod, shape (K,).
     affinity
-        Mean number of lines of SKU h ordered with a line of SKU k (row k), shape (K, K). Default:
-        none.
+        Mean number of lines of SKU h (column h) that are ordered with a line of SKU k (row k),
+        shape (K, K); the diagonal is ignored. Default: no such lines.
     visit_s
         Robot time of a visit, in s.
     pile_on
-        Units per visit, positive.
+        Mean number of units picked per visit, positive.
 
     Returns
     -------
@@ -87,7 +89,7 @@ def bundle_worth_s(
 def expected_served(units: NDArray[np.int64], mean: NDArray[np.float64]) -> NDArray[np.float64]:
     r"""Return :math:`E[\min(q, D)]` of a Poisson demand D.
 
-    It is :math:`\mu P(D \le q - 2) + q P(D \ge q)`.
+    This expected value equals :math:`\mu P(D \le q - 2) + q P(D \ge q)`.
 
     Parameters
     ----------

@@ -1,8 +1,9 @@
 """The input of the bound on picked units: stations, robots, stock, refill, demand, time window.
 
 Except for the length of the window, every number is an extreme: a *least* time or a *largest*
-amount. The bound is proven for all runs within these limits, so a caller who is unsure of a number
-should pass a more generous one (0 for a changeover, infinity for the demand).
+amount. The bound is proven for all runs within these limits. If a number is uncertain, the
+caller should pass a shorter time or a larger amount, which keep the bound valid (for example 0 for
+a changeover, infinity for the demand).
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ class PickStations:
     unit_transfer_s
         Least time for which the pick of one unit occupies the station, in s.
     unit_pick_s
-        Least time for which the pick of one unit occupies the robot, in s. The longer of this and
-        `unit_transfer_s` must be positive.
+        Least time for which the pick of one unit occupies the robot, in s. At each station,
+        `unit_transfer_s` or `unit_pick_s` must be positive.
     changeover_s
         Least time from the moment a robot may leave the head of the queue until the next robot can
         be served, in s; 0 is always valid.
@@ -80,7 +81,7 @@ class PickStations:
 
 @dataclass(frozen=True)
 class Refill:
-    """The replenishment stations; arrays have shape (Q,). Without stations nothing is refilled.
+    """The replenishment stations; all arrays have shape (Q,). If Q is 0, no pod is refilled.
 
     Parameters
     ----------
@@ -124,7 +125,8 @@ class Stock:
     ----------
     pod_units
         Largest possible number of units in each pod at the start of the window, shape (P,): the
-        actual number if it is known, otherwise what fits (capacity / least space of a unit).
+        actual number if it is known, otherwise the number that fits (the capacity of the pod
+        divided by the least space that a unit of any SKU needs).
     largest_pod_units
         Maximum number of units that any pod can hold at any time.
 
@@ -156,9 +158,9 @@ class Orders:
     largest_order_units
         Maximum number of units in an order; infinity if unknown. Default: unknown.
     lone_units
-        Maximum total number of units of all orders that are each served whole in one visit. If the
-        orders are known: the units of those orders for which there is a pod that holds all SKUs of
-        the order. Default: unlimited.
+        Maximum total number of units in *lone* orders: orders served completely in one visit. If
+        the orders are known, count the units of every order whose SKUs are all held by a single
+        pod at some time in the window. Default: unlimited.
     join_visits
         Whether an order that is assigned to a station during a visit can still be served in that
         visit. Default: yes, which is always valid.
@@ -187,9 +189,9 @@ class RunBound:
     Parameters
     ----------
     duration_s
-        Length H of the window in which picks are counted, in s, positive.
+        Length of the window in which picks are counted, H, in s, positive.
     robots
-        Number R of robots.
+        Number of robots, R.
     picking, refill, stock, orders
         The pick stations, the replenishment stations, the contents of the pods, and the demand.
 
@@ -229,8 +231,8 @@ class RunBound:
         """Maximum number of units in one visit at each pick station, shape (S,).
 
         A pod is not refilled while units are picked from it, so a visit cannot yield more than the
-        pod can hold. If orders cannot join a running visit (`Orders.join_visits`), a visit cannot
-        yield more than the open orders ask for, either.
+        pod can hold. If orders cannot join a running visit (`Orders.join_visits` is False), a visit
+        cannot yield more units than the open orders have, either.
         """
         largest = np.full(len(self.picking.order_slots), float(self.stock.largest_pod_units))
         if self.orders.join_visits or math.isinf(self.orders.largest_order_units):
@@ -243,8 +245,8 @@ class RunBound:
     def end_effect_s(self) -> float:
         """Maximum time that a robot's counted visits and drives take outside the window, in s.
 
-        It consists of a drive in before the window, and of a service (one unit or bundle) and a
-        drive out after it.
+        Before the window, this is at most one drive to a station; after the window, at most the
+        service of one unit or bundle and one drive away from a station.
         """
         inbound = np.concatenate([self.picking.inbound_s, self.refill.inbound_s])
         outbound = np.concatenate(
@@ -258,14 +260,15 @@ class RunBound:
 
 @dataclass(frozen=True)
 class Throughput:
-    """Counts in the window: of a simulated run, or at the optimum of the linear program.
+    """Counts in the window, of a simulated run or at the optimum of the linear program.
 
     Attributes
     ----------
     units, visits
         Units picked, and visits of pods, at each pick station, shape (S,).
     lone_units
-        The part of the units that went to orders served whole from one visit, shape (S,).
+        The part of the units picked that belongs to orders served completely in one visit, shape
+        (S,).
     bundles, refill_visits
         Bundles stored, and visits of pods, at each replenishment station, shape (Q,).
     """

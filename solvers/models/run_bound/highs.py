@@ -31,14 +31,14 @@ def solve(
     data
         The warehouse.
     limits
-        `iterations` limits the simplex method; the bound is valid whenever it stops.
+        `iterations` limits the simplex method; the bound is valid even if this limit is reached.
     seed, start
         Not used, as this is a linear program.
 
     Returns
     -------
-    The counts at the optimum (none if the limit was reached before) and, as `bound`, the proven
-    bound in units per hour; work is counted in simplex iterations.
+    The counts at the optimum (None if the limit was reached) and, as `bound`, the proven bound in
+    units per hour. Work is counted in simplex iterations.
     """
     begin = perf_counter()
     linear, columns = program(data)

@@ -1,9 +1,10 @@
 r"""The least robot time that each visit requires to bring its pod and to take it away.
 
 A pod comes to a station from a storage location, where it was lifted, or directly from another
-station; it leaves for a storage location or another station. A drive from or to storage belongs to
-one visit; a drive between two stations is shared by two visits, each of which is charged one half.
-With driving times t and storage locations l, the times of station s are
+station. It leaves for a storage location, where it is set down, or for another station. A drive
+from or to storage belongs to one visit; a drive between two stations is shared by two visits, each
+of which is charged one half. With driving times t and storage locations l, the times of station s
+are
 
 .. math::
 
@@ -49,16 +50,16 @@ def visit_legs(
     to_storage_s
         Least driving time from each station to a storage location, shape (S,), in s.
     between_s
-        Least driving time from station to station, shape (S, S), in s; +inf where pods do not go
-        straight from one to the other. The diagonal is not read: a pod that stays makes no new
-        visit.
+        Least driving time from each station (row) to each station (column), shape (S, S), in s;
+        +inf if no pod is brought directly from the one to the other. The diagonal is not read: a
+        pod that stays makes no new visit.
     transfer_s
         Least time to lift or to set down a pod, in s.
 
     Returns
     -------
-    The charges, +inf for a station that no pod can reach or leave. `PickStations` and `Refill`
-    refuse such a station.
+    The robot times; +inf if no pod can reach the station or leave it, respectively. `PickStations`
+    and `Refill` raise an error for such a station.
 
     Raises
     ------

@@ -1,45 +1,50 @@
-r"""The linear program behind the proven bound; each of its inequalities holds for every run.
+r"""The linear program for the bound on units per hour; its inequalities hold for every run.
 
-A *pick* occupies station s for :math:`\tau_s` and the robot for :math:`\pi_s` seconds from its
-start. A *visit* is a stay of a pod at the head of a station's queue; it counts if a pick (at a
-replenishment station: the storing of a bundle) starts during the visit and in the window
-:math:`[0, H]`. :math:`n_s` units and :math:`v_s` visits are counted at pick station s, :math:`m_q`
-bundles and :math:`z_q` visits at replenishment station q. With :math:`a_s = \max(\tau_s, \pi_s)`
-and :math:`b_s = \max(\tau_s, \pi_s + c_s)`, where :math:`c_s` is the least changeover:
+A *pick* at station s occupies the station for at least :math:`\tau_s` seconds and the robot for at
+least :math:`\pi_s` seconds, both from the start of the pick. A *visit* is a stay of a pod at the
+head of a station's queue. A visit counts if a pick (at a replenishment station: the storing of a
+bundle) starts during the visit and in the window :math:`[0, H]`. The counts are :math:`n_s` units
+and :math:`v_s` visits at pick station s, and :math:`m_q` bundles and :math:`z_q` visits at
+replenishment station q. Let :math:`c_s` be the least changeover time from one pod to the next,
+:math:`a_s = \max(\tau_s, \pi_s)` and :math:`b_s = \max(\tau_s, \pi_s + c_s)`, all in seconds. The
+inequalities are:
 
 1. :math:`a_s n_s + (b_s - a_s) v_s \le H + b_s`. Picks of one visit start at least :math:`a_s`
    apart; the last pick of a visit and the first pick of the next visit start at least :math:`b_s`
-   apart. All :math:`n_s - 1` gaps, :math:`v_s - 1` of them between visits, fit between 0 and H.
+   apart. The :math:`n_s - 1` gaps between picks, of which :math:`v_s - 1` are gaps between visits,
+   together fit into the window.
 2. :math:`n_s \le \lfloor H / a_s \rfloor + 1`, for the same reason and because units are whole.
-3. :math:`v_s \le n_s \le u_s v_s`: a visit that counts has at least one unit and at most
-   :math:`u_s` units (see `RunBound.visit_units`).
+3. :math:`v_s \le n_s \le u_s v_s`: at least one unit and at most :math:`u_s` units (see
+   `RunBound.visit_units`) are picked in a visit that counts.
 4. :math:`m_q \le z_q B`, and :math:`\beta_q m_q \le H + \beta_q`: a visit stores at most B bundles,
-   and a bundle occupies its station for :math:`\beta_q`.
+   and a bundle occupies the station and the robot for at least :math:`\beta_q` seconds.
 5. Robots: :math:`\sum_s [a_s n_s + (w_s + \pi_s - a_s) v_s] + \sum_q [\beta_q m_q + w_q z_q] \le
-   R\,(H + E)` with R robots. A visit with k units holds its robot for at least :math:`(k - 1) a_s
-   + \pi_s`, one with k bundles for :math:`k \beta_q`. Each visit needs a drive in and a drive out,
-   which together take at least :math:`w_s` or :math:`w_q` seconds (`visit_legs` divides a drive
-   between two stations into halves, so nothing counts twice). Of these times, only the drive in of
-   a robot's first visit, and the last service and the drive out of its last visit, can lie outside
-   the window: at most E seconds per robot (`RunBound.end_effect_s`).
+   R\,(H + E)` with R robots. A visit with k units occupies its robot for at least :math:`(k - 1)
+   a_s + \pi_s` seconds, and a visit with k bundles for at least :math:`k \beta_q` seconds. Each
+   visit needs a drive to the station and a drive away from it, which together take at least
+   :math:`w_s` or :math:`w_q` seconds. (Half of a drive between two stations is charged to each of
+   the two visits, so nothing counts twice; see `visit_legs`.) For each robot, at most E seconds of
+   these times lie outside the window: the drive to its first visit, the last service of its last
+   visit, and the drive away from that visit (`RunBound.end_effect_s`).
 6. Content: :math:`\sum_s n_s \le \sum_p K_p y_p + g \sum_q m_q`, :math:`0 \le y_p \le 1`,
-   :math:`\sum_p y_p \le \sum_s v_s`, where :math:`y_p` is 1 if units are picked from pod p. A unit
-   picked in the window was in its pod p at the start (one of at most :math:`K_p`) or has come since
-   in a bundle of at most g units; and there are no more pods with picks than visits. Integrality of
-   :math:`y_p` is relaxed.
-7. Demand: :math:`\sum_s n_s \le D`, the number of units asked for.
-8. Slots: :math:`n_s \le l_s + U C_s (v_s + 1)`, :math:`\sum_s l_s \le L`. An order is *lone* if one
-   visit serves it whole, otherwise *spread*. Of the :math:`n_s` units, :math:`l_s` go to lone
-   orders, which have at most L units in total. A spread order served in a visit was open when the
-   visit began or is still open when it ends, so a visit serves at most :math:`2 C_s` of them, with
-   :math:`C_s` slots. Each spread order is served in at least two visits within the window, unless
-   an end of the window cuts it off, which happens to at most :math:`C_s` orders at each end. So
-   there are no more than :math:`C_s (v_s + 1)` spread orders, of at most U units each.
+   :math:`\sum_p y_p \le \sum_s v_s`, where :math:`y_p` is 1 if units are picked from pod p. Each
+   unit picked from pod p either was there at the start of the window, as one of at most
+   :math:`K_p` units, or was stored later, in a bundle of at most g units. There are at least as
+   many visits as pods from which units are picked. Integrality of :math:`y_p` is relaxed.
+7. Demand: :math:`\sum_s n_s \le D`, the number of units ordered.
+8. Slots: :math:`n_s \le l_s + U C_s (v_s + 1)`, :math:`\sum_s l_s \le L`, where :math:`C_s` is the
+   number of order slots. An order is *lone* if one visit serves it whole, otherwise *spread*. Of
+   the :math:`n_s` units, :math:`l_s` go to lone orders, which have at most L units in total. A
+   spread order that is served in a visit is open when the visit begins or when the visit ends, so
+   a visit serves at most :math:`2 C_s` spread orders. Each spread order is served in at least two
+   visits in the window, except for at most :math:`C_s` orders that are open when the window begins
+   and at most :math:`C_s` orders that are open when it ends. So there are at most :math:`C_s (v_s +
+   1)` spread orders, of at most U units each.
 
-So the counts of every run are a feasible point, and the units picked in the run are at most the
-optimum. The reported bound is not the optimum found by a solver but the dual value of the solver's
-multipliers after a repair that makes them dual feasible. This value is rounded up, and no solver
-error can push it below the optimum.
+Therefore the counts of every run are a feasible point, and the number of units picked in the run is
+at most the optimum. The reported bound is not the optimum found by the solver. It is the dual value
+of the solver's multipliers, which are first repaired so that they are dual feasible. This value is
+rounded up, so no error of the solver can push it below the optimum.
 """
 
 from __future__ import annotations
@@ -59,7 +64,18 @@ _ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class Columns:
-    """Column indices: per pick station, per replenishment station and per distinct pod content."""
+    """Indices of the columns of the program.
+
+    Attributes
+    ----------
+    units, visits, lone_units
+        Columns n, v and l, one per pick station each.
+    bundles, refill_visits
+        Columns m and z, one per replenishment station each.
+    pods
+        Columns y, one per distinct content of pods; the upper bound of a column is the number of
+        pods with this content.
+    """
 
     units: NDArray[np.int64]
     visits: NDArray[np.int64]
@@ -70,7 +86,7 @@ class Columns:
 
 
 def violations(data: RunBound, values: Throughput) -> list[str]:
-    """Return a list with one message if the counts violate any inequality, otherwise an empty list.
+    """Return one message if the counts violate any inequality, otherwise an empty list.
 
     The counts of every simulated run must satisfy all inequalities.
 
@@ -95,7 +111,7 @@ def violations(data: RunBound, values: Throughput) -> list[str]:
 
 
 def program(data: RunBound) -> tuple[LinearProgram, Columns]:
-    """Formulate the inequalities of the module's docstring.
+    """Formulate the linear program that the module docstring describes.
 
     Parameters
     ----------
@@ -104,7 +120,7 @@ def program(data: RunBound) -> tuple[LinearProgram, Columns]:
 
     Returns
     -------
-    The program, which minimises the negative of the number of units, and its columns.
+    The program, which minimises minus the number of units picked, and the indices of its columns.
     """
     builder = ProgramBuilder()
     columns = _columns(builder, data)
@@ -150,7 +166,7 @@ def _limit_stock(builder: ProgramBuilder, columns: Columns, data: RunBound) -> N
 
 
 def _limit_orders(builder: ProgramBuilder, columns: Columns, data: RunBound) -> None:
-    """Rows 7 and 8, where they say anything."""
+    """Rows 7 and 8, if their limits are finite."""
     orders, n = data.orders, columns.units
     if math.isfinite(orders.units):
         builder.rows(1, (0, n, 1.0), upper=orders.units)
@@ -179,7 +195,7 @@ def _columns(builder: ProgramBuilder, data: RunBound) -> Columns:
 
 
 def _at_most(duration_s: float, each_s: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return how many times that are so far apart fit into the window."""
+    """Return how many events fit into the window if they are at least `each_s` apart."""
     whole: NDArray[np.float64] = np.floor(duration_s / each_s * (1.0 + _ROUNDING)) + 1.0
     return whole
 

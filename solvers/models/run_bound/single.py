@@ -1,4 +1,4 @@
-"""Bounds from single resources, weaker than the linear program but easy to interpret."""
+"""Bounds on units per hour from single resources: weaker than the linear program, but simpler."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ from rmfs.solvers.models.run_bound.data import RunBound
 def single_bounds(data: RunBound) -> dict[str, float]:
     r"""Return upper bounds on the units per hour, each from a single resource.
 
-    With the symbols of the module `program`, the units picked in the window are at most
+    The symbols are those of the module `program`. The number of units picked in the window is at
+    most
 
     - ``stations``: :math:`\sum_s (H / a_s + 1)`, as if stations never waited for a pod;
     - ``robots``: :math:`R (H + E) / \min_s (a_s + (w_s + \pi_s - a_s) / u_s)`, as if all visits
-      went to the station with the least robot time per unit, with the largest possible pile-on
-      :math:`u_s`; at a station where visits for a single unit take less time per unit, their time
-      :math:`w_s + \pi_s` is used instead;
-    - ``demand``: the units ordered.
+      went to the station with the least robot time per unit and had the largest possible pile-on
+      :math:`u_s`; for a station at which a visit with a single unit takes less robot time per unit,
+      the term in the minimum is :math:`w_s + \pi_s`;
+    - ``demand``: the number of units ordered.
 
     Parameters
     ----------
@@ -28,8 +29,8 @@ def single_bounds(data: RunBound) -> dict[str, float]:
 
     Returns
     -------
-    The bounds by name, converted to units per hour; each is at least that of the linear program, up
-    to rounding.
+    The bounds by name, converted to units per hour. Up to rounding, none is below the bound of the
+    linear program.
     """
     picking = data.picking
     cadence = picking.cadence_s

@@ -1,7 +1,10 @@
-"""Rack sequencing at one station with the fewest pod visits (Boysen, Briskorn, Emde 2017).
+"""Rack sequencing: serve the orders of one station with the fewest pod visits.
 
-- `dynamic`: exact, for about ten orders; `cp_sat`: exact, limited by counted work;
-- `beam`: beam search with local search, for any size.
+The problem is that of Boysen, Briskorn, Emde 2017. The methods are:
+
+- `dynamic`: exact, for at most about ten orders;
+- `cp_sat`: exact unless a limit ends the search;
+- `beam`: beam search followed by local search, for any size.
 """
 
 from rmfs.solvers.models.methods import Methods

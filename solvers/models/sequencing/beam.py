@@ -1,13 +1,14 @@
 """Beam search followed by a local search, for inputs too large for the exact methods.
 
 In each step, every kept partial plan is extended by a visit of each pod in turn, and the best few
-of the extended plans are kept. There are two extensions for each plan and pod. The first opens new
-orders for which the pod holds some but not all SKUs, while slots are free; orders that then miss
-the fewest SKUs come first. The second does the same, but only with orders for which the pod holds
-at least half of the SKUs. Plans are ranked by the number of SKUs that their orders still miss in
-total; SKUs of open orders count twice, as an open order holds a slot. All plans of a step are
-scored together, by one matrix product. The search is deterministic: ties go to the first kind of
-extension, then to the plan kept earlier, then to the pod with the lower index.
+of the extended plans are kept. There are two extensions for each plan and pod. The first fills free
+slots with new orders for which the pod holds some, but not all, of the SKUs; the orders that then
+lack the fewest SKUs come first. The second does the same, but only with orders for which the pod
+holds at least half of the SKUs. Plans are ranked by the total number of SKUs that their orders
+still lack; SKUs of open orders count twice, because an open order occupies a slot. All plans of a
+step are scored together, by one matrix product. The search is deterministic: ties go to the first
+kind of extension, then to the extended plan that ranked higher in the previous step, then to the
+pod with the lower index.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ def solve(
     start: VisitSequence | None = None,
     width: int = WIDTH,
 ) -> Solution[VisitSequence]:
-    """Find a good plan.
+    """Find a plan with few visits by beam search, followed by local search.
 
     Parameters
     ----------
@@ -54,13 +55,13 @@ def solve(
     seed
         Seed of the local search. Default 0.
     start
-        A feasible plan; the result is never worse. Default: none.
+        A feasible plan; the result never has more visits. Default: none.
     width
         Number of partial plans kept per visit. Default `WIDTH`.
 
     Returns
     -------
-    A feasible plan, and as bound that of `visits_bound`.
+    A feasible plan, with the bound of `visits_bound`; status INFEASIBLE if there is no plan.
     """
     began = time.perf_counter()
     if not data.feasible:
@@ -93,7 +94,7 @@ def search(data: Sequencing, width: int) -> tuple[VisitSequence, int]:
 
     Returns
     -------
-    A feasible plan, and the number of visits scored.
+    A feasible plan, and the number of candidate visits scored.
     """
     pods = useful_pods(data)
     holds = data.holds[pods].astype(np.float32)
@@ -121,7 +122,7 @@ class _Partial:
 def _next(
     data: Sequencing, kept: list[_Partial], holds: NDArray[np.float32], visit: int, width: int
 ) -> list[_Partial]:
-    """All kept plans with every pod after them, the best `width` different ones."""
+    """Extend each kept plan by a visit of each pod; return the `width` best different plans."""
     missing = np.stack([plan.missing for plan in kept]).astype(np.float32)
     started = np.stack([plan.started for plan in kept])[:, None, :]
     lacks = missing.sum(axis=2)[:, None, :]

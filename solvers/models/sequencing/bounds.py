@@ -1,8 +1,9 @@
-"""Lower bounds on the number of visits.
+"""A lower bound on the number of visits.
 
-The visiting pods must together hold all needed SKUs, so the size of a minimum cover of these SKUs
-by pods is a lower bound. This size is itself bounded from below by the duals of the relaxed
-covering problem (`safe_bound`), rounded up to a whole number.
+The visiting pods together hold all needed SKUs. So there are at least as many visits as there are
+pods in the smallest set that holds all these SKUs (a minimum cover). The dual value of the linear
+relaxation of this covering problem (`safe_bound`), rounded up to a whole number, is a lower bound
+on the size of that set.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Rack sequencing, solved by CP-SAT; a plan may have at most as many visits as a heuristic one."""
+"""Rack sequencing by CP-SAT, for plans with at most as many visits as a heuristic plan."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ def solve(
     seed: int = 0,
     start: VisitSequence | None = None,
 ) -> Solution[VisitSequence]:
-    """Find a plan with the fewest visits; of the limits, `deterministic_s` and `gap` apply.
+    """Find a plan with the fewest visits.
 
-    The search starts from the plan of the beam search unless another start is given.
+    Of the limits, `deterministic_s` and `gap` apply. The solver starts from `start` or, if it is
+    not given, from the plan of `beam`.
     """
     began = time.perf_counter()
     if not data.feasible:

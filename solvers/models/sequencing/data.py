@@ -1,15 +1,16 @@
 r"""Rack sequencing at one pick station: the problem, and the conditions that a plan must meet.
 
-Orders are processed with at most C of them open at a time, pods visit the station one after the
-other, and an open order takes from a visiting pod all SKUs that the order misses and the pod holds.
-The number of visits is minimised (the mobile robot order picking problem of Boysen, Briskorn, Emde
-2017). Consecutive visits of the same pod count once. A pod that holds a SKU has enough units of it
-for all orders.
+At most C orders are open at a time, and pods visit the station one after the other. Each open order
+takes from a visiting pod all SKUs that the order still needs and the pod holds. The number of
+visits is minimised (the mobile robot order picking problem of Boysen, Briskorn, Emde 2017).
+Consecutive visits of the same pod count as one. A pod that holds a SKU has enough units of it for
+all orders.
 
-A visit has three steps. First, open orders are served, and those now complete leave (set B). Then
-orders that this pod completes alone come and go one after the other, each occupying a slot for a
-moment (set Z). Last, new orders are opened and stay (set N). If A is the set of orders that are
-open before and after the visit, the slots require
+A visit has three steps. First, open orders are served, and those that are now complete leave (set
+B). Then orders for which this pod holds all SKUs are opened and completed one after the other, so
+each occupies a slot for only a moment (set Z). Last, new orders are opened that are not completed
+in this visit (set N). Let A be the set of orders that are open both before and after the visit. As
+there are C slots, the sets must satisfy
 
 .. math::
 
@@ -38,13 +39,14 @@ class Sequencing:
     Parameters
     ----------
     needs
-        Whether an order (still) needs a SKU, shape (O, K); every order needs at least one.
+        Whether each order needs each SKU, shape (O, K); every order needs at least one. For an
+        order that is already open, only the SKUs that it still lacks are needed.
     holds
-        Whether a pod holds a SKU, shape (P, K).
+        Whether each pod holds each SKU, shape (P, K).
     capacity
         Maximum number C of open orders.
     opened
-        Whether an order is already open before the first visit, shape (O,). Default: none is.
+        Whether each order is already open before the first visit, shape (O,). Default: none is.
 
     Raises
     ------
@@ -70,7 +72,7 @@ class Sequencing:
 
     @property
     def open(self) -> Flags:
-        """`opened`, or all false if it was not given, shape (O,)."""
+        """Whether each order is already open before the first visit, shape (O,)."""
         assert self.opened is not None
         return self.opened
 
@@ -97,9 +99,10 @@ class VisitSequence:
     Parameters
     ----------
     pods
-        The visiting pods in sequence, shape (T,).
+        Index of the visiting pod at each visit, shape (T,).
     start
-        Visit during which each order is opened, shape (O,); -1 if open before the first visit.
+        Index of the visit at which each order is opened, shape (O,); -1 if the order is open before
+        the first visit.
     """
 
     pods: Integers
@@ -107,7 +110,7 @@ class VisitSequence:
 
 
 def objective(data: Sequencing, plan: VisitSequence) -> float:
-    """Return the number of visits; consecutive visits of the same pod count once.
+    """Return the number of visits; consecutive visits of the same pod count as one.
 
     Parameters
     ----------
@@ -120,7 +123,7 @@ def objective(data: Sequencing, plan: VisitSequence) -> float:
 
 
 def finish(data: Sequencing, plan: VisitSequence) -> Integers:
-    """Return the visit that completes each order, shape (O,); `NEVER` if none does.
+    """Return the index of the visit that completes each order, shape (O,); `NEVER` if none does.
 
     Parameters
     ----------
@@ -142,7 +145,7 @@ def finish(data: Sequencing, plan: VisitSequence) -> Integers:
 
 
 def violations(data: Sequencing, plan: VisitSequence) -> list[str]:
-    """Return which conditions a plan violates.
+    """List the conditions that a plan violates.
 
     Parameters
     ----------
@@ -153,7 +156,7 @@ def violations(data: Sequencing, plan: VisitSequence) -> list[str]:
 
     Returns
     -------
-    One line per kind of violation; empty if the plan is feasible.
+    One message per kind of violation; empty if the plan is feasible.
     """
     visits, end = plan.pods.size, finish(data, plan)
     problems = []

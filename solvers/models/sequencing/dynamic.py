@@ -1,14 +1,17 @@
 """Exact dynamic program for small inputs: A* over the missing SKUs of each order.
 
-A state consists of the missing SKUs of each order (none: the order is complete; some: open; all:
-not started, unless it was open before the first visit). A transition is one visit: the pod serves
-the open orders and, if there is a slot, completes further orders by itself; of the orders that it
-can serve only in part, any selection for which there are slots may be opened. (The states are those
-of Justkowiak, Kovalyov, Pesch 2024: completed orders, open orders, missing SKUs.) Each visit costs
-1. To estimate the remaining cost, the number of missing SKUs of each order is divided by the
-largest number of them on any pod and rounded up; the estimate is the maximum over the orders. As it
-is never too high, the first complete state examined is optimal, and the smallest total of past
-visits and estimate among the states not yet examined is always a valid bound.
+A state consists of the missing SKUs of each order. If no SKU is missing, the order is complete; if
+some are missing, it is open; if all are missing, it has not been started, unless it was open before
+the first visit. (The states are those of Justkowiak, Kovalyov, Pesch 2024: completed orders, open
+orders, missing SKUs.) A transition is one visit. The pod serves the open orders and, if there is a
+free slot, completes all further orders for which it holds every SKU. Of the orders that it can
+serve only in part, any subset for which there are slots may be opened.
+
+Each visit costs 1. To estimate the remaining cost, the number of missing SKUs of each order is
+divided by the largest number of these SKUs on any one pod and rounded up; the order needs at least
+this number of further visits. The maximum over the orders is the estimate. As the estimate is never
+too high, the first complete state that is examined is optimal. At any time, a lower bound on the
+number of visits is the smallest sum of past visits and estimate over the states not yet examined.
 """
 
 from __future__ import annotations
@@ -41,7 +44,7 @@ def solve(
     Parameters
     ----------
     data
-        The input, of at most about ten orders.
+        The input. The method is practical up to about ten orders.
     limits
         ``iterations`` limits the number of expanded states. Default: none.
     seed
@@ -51,7 +54,8 @@ def solve(
 
     Returns
     -------
-    The plan. If the limit is reached and there is no start, the status is LIMIT, without values.
+    An optimal plan. If the limit is reached, the result is the start or, without a start, has no
+    values and status LIMIT. The status is INFEASIBLE if there is no plan.
     """
     began = time.perf_counter()
     if not data.feasible:
@@ -87,7 +91,7 @@ def solve(
 
 
 def _visit(state: State, held: int, sets: Sets, capacity: int) -> Iterator[State]:
-    """All states after a visit of a pod that holds the given SKUs; none if it helps nobody."""
+    """All states after a visit of a pod that holds the given SKUs; none if no order uses it."""
     missing, started = state
     served = list(missing)
     staying = 0
@@ -119,7 +123,7 @@ def _visit(state: State, held: int, sets: Sets, capacity: int) -> Iterator[State
 
 
 def _estimate(missing: tuple[int, ...], sets: Sets) -> int:
-    """Visits that the order in most need takes at least: SKUs missing by most SKUs a pod brings."""
+    """Return the estimate of the remaining visits that the module docstring defines."""
     most = 0
     for lacks in set(missing):
         if lacks:
@@ -156,7 +160,7 @@ def _solution(
     expanded: int,
     began: float,
 ) -> Solution[VisitSequence]:
-    """Wrap up."""
+    """Create the `Solution`."""
     return Solution(
         values=plan,
         objective=math.inf if plan is None else objective(data, plan),

@@ -1,11 +1,11 @@
 """Local search on the sequence of visits: remove a visit, then repair the plan.
 
-For a given sequence of visits, `still_open` decides when to open which order, as in interval
-scheduling: of the orders that waiting would delay, it opens those that would be complete first. The
-search removes the visit whose loss leaves the fewest orders incomplete, then tries random moves
-(exchange two visits, move a visit, or replace a pod) and keeps the moves that do not increase the
-number of incomplete orders. As soon as no order is incomplete, a shorter plan has been found, and
-the search goes on by removing another visit.
+For a given sequence of visits, `still_open` decides at which visit to open each order, as in
+interval scheduling: of the orders that would be completed later if they were opened only at the
+next visit, it opens those that would be completed first. The search removes the visit whose removal
+leaves the fewest orders incomplete. It then tries random moves (exchange two visits, move a visit,
+or replace a pod) and keeps those that do not increase the number of incomplete orders. When all
+orders are complete, a shorter plan has been found, and the search removes another visit.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ MOVES = 400
 def improve(
     data: Sequencing, plan: VisitSequence, moves: int | None = None, seed: int = 0
 ) -> tuple[VisitSequence, int]:
-    """Shorten a plan.
+    """Shorten a plan by local search.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def improve(
 
     Returns
     -------
-    A feasible plan with at most as many visits, and the number of moves tried.
+    A feasible plan with at most as many visits as the given one, and the number of moves tried.
     """
     most = MOVES if moves is None else moves
     rng = np.random.default_rng(seed)
@@ -71,19 +71,20 @@ def improve(
 
 
 def still_open(data: Sequencing, pods: Integers) -> tuple[Integers, int]:
-    """Decide when to open which order for a fixed sequence of visits.
+    """Decide at which visit to open each order, for a fixed sequence of visits.
 
     Parameters
     ----------
     data
         The input.
     pods
-        The visiting pods in sequence, shape (T,).
+        Index of the visiting pod at each visit, shape (T,).
 
     Returns
     -------
-    The visit at which each order is opened (-1 if it is open before the first visit, `NEVER` if it
-    is not opened), and how many orders stay incomplete.
+    The index of the visit at which each order is opened, shape (O,), and the number of orders that
+    stay incomplete. The index is -1 if the order is open before the first visit, and `NEVER` if it
+    is not opened.
     """
     end = _ends(data, pods)
     start = np.where(data.open, -1, NEVER)
@@ -106,7 +107,7 @@ def still_open(data: Sequencing, pods: Integers) -> tuple[Integers, int]:
 
 
 def merged(plan: VisitSequence) -> VisitSequence:
-    """Merge consecutive visits of the same pod into one.
+    """Return the plan with consecutive visits of the same pod merged into one.
 
     Parameters
     ----------

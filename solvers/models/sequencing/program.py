@@ -1,8 +1,13 @@
 r"""Rack sequencing as an integer program over at most T visits, the length of a heuristic plan.
 
-Binary columns: v_tp pod p makes visit t, s_ot order o has started by visit t, f_ot order o has
-finished by visit t, d_okt order o takes SKU k at visit t, c_ot order o comes and goes (starts and
-finishes) at visit t, r_t some order comes and goes at visit t. C is the number of order slots.
+C is the number of order slots. The columns are binary; each is 1 if its statement is true:
+
+- :math:`v_{tp}`: pod p makes visit t;
+- :math:`s_{ot}`: order o has been started by the end of visit t;
+- :math:`f_{ot}`: order o has been finished by the end of visit t;
+- :math:`d_{okt}`: order o takes SKU k at visit t;
+- :math:`c_{ot}`: order o passes at visit t, that is, it is started and finished during the visit;
+- :math:`r_t`: some order passes at visit t.
 
 .. math::
 
@@ -14,8 +19,8 @@ finishes) at visit t, r_t some order comes and goes at visit t. C is the number 
     & \textstyle\sum_o (s_{ot} - f_{ot}) \le C, \qquad f_{ot} - s_{o,t-1} \le c_{ot} \le r_t \\
     & \textstyle\sum_o (s_{o,t-1} - f_{ot} + c_{ot}) + r_t \le C
 
-The last row leaves a slot for orders that come and go: the sum in it is the number of orders that
-are open both before and after the visit.
+The last row leaves a slot for the orders that pass: its sum over the orders is the number of orders
+that are open both before and after the visit.
 """
 
 from __future__ import annotations
@@ -43,19 +48,24 @@ from rmfs.solvers.models.sequencing.sets import useful_pods
 
 @dataclass(frozen=True)
 class Columns:
-    """The columns for a horizon of T visits, and their conversion to and from plans.
+    """The columns for at most T visits, and their conversion to and from plans.
 
     Parameters
     ----------
     data
         The input.
     pods
-        The pods considered.
-    visit, started, finished, passing, room
-        Indices of the columns v, shape (T, pods); s and f, shape (T + 1, O), with row 0 for the
-        time before the first visit; c, shape (T, O); r, shape (T,).
+        Indices of the pods considered, shape (pods,).
+    visit
+        Indices of the columns v, shape (T, pods).
+    started, finished
+        Indices of the columns s and f, shape (T + 1, O); row 0 is the time before the first visit.
+    passing
+        Indices of the columns c, shape (T, O).
+    room
+        Indices of the columns r, shape (T,).
     order, sku
-        Order and SKU of each pair (an order and a SKU that it needs), shape (pairs,).
+        The order and the SKU of each pair of an order and a SKU that it needs, shape (pairs,).
     take
         Indices of the columns d, shape (T, pairs).
     """
@@ -124,9 +134,9 @@ def formulate(data: Sequencing, visits: int, least: int) -> Formulation[VisitSeq
     data
         The input, which must be feasible.
     visits
-        The horizon T.
+        Maximum number T of visits.
     least
-        A proven lower bound on the number of visits; at least this many visits are made.
+        A proven lower bound on the number of visits; the program requires at least this number.
     """
     builder = ProgramBuilder()
     pods = useful_pods(data)
@@ -223,7 +233,7 @@ def _slots(
 
 
 def _stand_ins(data: Sequencing, pods: Integers) -> Integers:
-    """For each pod the position of a listed pod that holds all its useful SKUs."""
+    """For each pod, return the position of a listed pod that holds all its needed SKUs."""
     holds = data.holds[:, data.needs.any(axis=0)].astype(np.float32)
     covers = holds @ holds[pods].T == holds.sum(axis=1, keepdims=True)
     stand_in: Integers = covers.argmax(axis=1)

@@ -1,8 +1,8 @@
-"""Rack sequencing in bit sets for the search methods; SKUs and pods that do not matter are dropped.
+"""Rack sequencing as bit sets of SKUs, without the SKUs and pods that do not matter.
 
-SKUs that no order needs are dropped. A pod is dropped if another pod holds all needed SKUs that it
-holds: the other pod can replace it, as every visit costs the same. Of pods that hold the same
-needed SKUs, the one with the lowest index is kept.
+SKUs that no order needs are dropped. A pod is dropped if another pod can replace it at every visit,
+that is, holds all needed SKUs of the dropped pod. Of several pods with the same needed SKUs, the
+one with the lowest index is kept.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ class Sets:
     Parameters
     ----------
     needs
-        SKUs that each order needs.
+        Set of the SKUs that each order needs.
     holds
-        Needed SKUs that each useful pod holds; see `useful_pods`.
+        Set of the needed SKUs that each useful pod holds; see `useful_pods`.
     pod
         Index of each useful pod in the input, shape (len(holds),).
     """
@@ -53,9 +53,8 @@ def reduce(data: Sequencing) -> Sets:
 def useful_pods(data: Sequencing) -> Integers:
     """Return, in ascending order, the pods that hold needed SKUs and are not dominated.
 
-    A SKU is needed if some order needs it. A pod is dominated if another pod holds all needed SKUs
-    that it holds and at least one further needed SKU, or if a pod with a lower index holds the same
-    needed SKUs.
+    A SKU is needed if some order needs it. Pod p is dominated if another pod holds all needed SKUs
+    of p and at least one more, or if a pod with a lower index holds the same needed SKUs as p.
 
     Parameters
     ----------

@@ -1,7 +1,10 @@
 """Pod storage assignment (PSA): where a pod waits for its next visit.
 
-- `placement`: assigns a batch of returning pods to free places, counting the cost of next visits;
-- `zones`: assigns classes of pods to zones in the steady state, with congestion; its prices rate
-  places;
-- `stays`: assigns pods whose next visits are known to zones of places over time.
+A *place* is a storage location; a *zone* is a group of places. The models are:
+
+- `placement`: assigns a batch of returning pods to free places, and takes the expected cost of
+  their next visits into account;
+- `zones`: assigns classes of pods to zones in the steady state, with congestion; the dual prices of
+  the zones can be used to rate places;
+- `stays`: assigns stays of pods to zones over time, if the times of the next visits are known.
 """

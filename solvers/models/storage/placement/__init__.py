@@ -1,4 +1,4 @@
-"""Assign returning pods to free places, counting the cost of their expected next visits."""
+"""Assign returning pods to free places at the least cost, expected next visits included."""
 
 import numpy as np
 from numpy.typing import NDArray

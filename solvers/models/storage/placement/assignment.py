@@ -1,4 +1,4 @@
-"""The best placement by linear assignment."""
+"""The optimal placement by linear assignment."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the place of each pod by SciPy's shortest augmenting paths."""
+    """Find the optimal place of each pod by SciPy's shortest augmenting path algorithm."""
     return solve_by(data, "scipy")
 
 
 def solve_by(data: Placement, solver: Solver) -> Solution[NDArray[np.int64]]:
-    """Find the placement with the least robot time by the given solver of assignment problems.
+    """Find the placement with the least robot time by the given assignment solver.
 
     Parameters
     ----------
@@ -33,7 +33,8 @@ def solve_by(data: Placement, solver: Solver) -> Solution[NDArray[np.int64]]:
 
     Returns
     -------
-    The place of each pod, shape (P,); work is the number of cost entries read.
+    The place of each pod, shape (P,). Work is the number of cost table entries examined, both for
+    the assignment and for its bound.
     """
     return solve_by_assignment(
         lambda: data.cost_s, lambda column: column, lambda place: objective(data, place), solver

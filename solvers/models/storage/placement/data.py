@@ -7,8 +7,8 @@ r"""The problem: a batch of pods to be stored, and the free storage locations (p
 
 Here :math:`x_{pl}` is 1 if pod p goes to place l. Robot time now is weighed against robot time
 later: for a pod that is needed again soon, a longer drive to a place near the stations pays off.
-This is the batch form of the "cheapest place" rule of Krenzler, Xie, Li 2018; without expected
-visits it becomes nearest-place storage.
+This is the batch form of the "cheapest place" rule of Krenzler, Xie, Li 2018. If no visits are
+expected, only the travel time counts, as in nearest-place storage.
 """
 
 from __future__ import annotations
@@ -56,7 +56,10 @@ class Placement:
 
     @property
     def cost_s(self) -> NDArray[np.float64]:
-        """Robot time of each pair of pod and place, now and later, shape (P, L), in s."""
+        """Robot time for storing each pod at each place, expected visits included, shape (P, L).
+
+        The unit is s; +inf where a pod may not be stored.
+        """
         return self.travel_s + np.outer(self.visits, self.access_s)
 
 
@@ -76,7 +79,7 @@ def objective(data: Placement, place: NDArray[np.int64]) -> float:
 
 
 def violations(data: Placement, place: NDArray[np.int64]) -> list[str]:
-    """Return what is wrong with a placement; empty if it is feasible.
+    """List the conditions that a placement violates; empty if the placement is feasible.
 
     Parameters
     ----------

@@ -17,5 +17,5 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the place of each pod by cost scaling on integers."""
+    """Find the optimal place of each pod by OR-Tools' cost-scaling algorithm, on integer costs."""
     return solve_by(data, "min_cost_flow")

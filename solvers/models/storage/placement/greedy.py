@@ -19,9 +19,9 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Let the pods, in descending order of expected visits, take the cheapest remaining place each.
+    """Give each pod the cheapest remaining place, in descending order of expected visits.
 
-    The bound is computed as if every pod took its cheapest place, even if others take it too.
+    The bound is computed as if any number of pods could share a place.
 
     Returns
     -------
@@ -42,7 +42,7 @@ def solve(
 
 
 def _places(data: Placement, free: NDArray[np.float64]) -> NDArray[np.int64] | None:
-    """Give pods places; None if one finds none. The table is used up."""
+    """Give pods places; return None if one finds none. The table `free` is overwritten."""
     place = np.full(len(free), -1, np.int64)
     for pod in np.argsort(-data.visits, kind="stable").tolist():
         best = int(free[pod].argmin()) if free.shape[1] else -1

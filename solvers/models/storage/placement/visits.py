@@ -1,7 +1,8 @@
 r"""Expected visits of a pod: its share of the demand, divided by the pile-on.
 
-Units of SKU k wanted within the horizon, :math:`D_k = backlog_k + rate_k \cdot horizon`, are taken
-from the pods in proportion to their stock :math:`s_{kp}`, up to the units in stock:
+Within the horizon, :math:`D_k = backlog_k + rate_k \cdot horizon` units of SKU k are wanted. They
+are taken from the pods in proportion to the stock :math:`s_{kp}` of each pod p, but a pod gives no
+more units than it has in stock:
 
 .. math::
 
@@ -26,16 +27,16 @@ def expected_visits(
     pile_on: float,
     pods: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
-    """Estimate how often each pod will visit a station, given stock, popularity and backlog.
+    """Estimate how often each pod will visit a station within the horizon.
 
     Parameters
     ----------
     stock
         Units of each SKU available on each pod, shape (K, P).
     backlog
-        Units of each SKU wanted by orders that wait, shape (K,).
+        Units of each SKU wanted by waiting orders, shape (K,).
     rate_per_h
-        Units of each SKU that new orders will ask for per hour (its popularity), shape (K,).
+        Units of each SKU that new orders will want per hour, shape (K,).
     horizon_h
         Horizon in h: about the time that a pod stays at its place.
     pile_on
@@ -45,7 +46,7 @@ def expected_visits(
 
     Returns
     -------
-    Expected visits of each of these pods, shape (P,) or (Q,).
+    Expected number of visits of each pod that is evaluated: shape (Q,), or (P,) without `pods`.
 
     Raises
     ------

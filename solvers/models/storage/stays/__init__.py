@@ -1,4 +1,4 @@
-"""Storage of pods whose next visits are known: the zone of places for each stay."""
+"""Assign each stay of a pod in storage to a zone of places, if the next visits are known."""
 
 import numpy as np
 from numpy.typing import NDArray

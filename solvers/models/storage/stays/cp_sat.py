@@ -19,7 +19,7 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the zone of each stay by constraint programming.
+    """Find the optimal zone of each stay by CP-SAT.
 
     Of the limits, `deterministic_s` and `gap` apply.
     """

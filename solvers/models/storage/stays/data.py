@@ -1,4 +1,4 @@
-r"""The problem: stays of pods, with known begin and end, and zones of equal storage locations.
+r"""The problem: stays of pods, with known begin and end, and zones of storage locations.
 
 .. math::
 
@@ -7,11 +7,10 @@ r"""The problem: stays of pods, with known begin and end, and zones of equal sto
 
 Here :math:`x_{sz}` is 1 if stay s is in zone z, and zone z has :math:`k_z` storage locations
 (places). A stay lasts from the moment when a place is assigned to a pod until the pod has left that
-place, ``[begin, end)``.
-(Weidinger, Boysen, Briskorn 2018 decide on single places, that is, zones of one place.) Places of a
-zone are interchangeable: if no more than :math:`k_z` stays overlap at any time, each can have a
-place of its own, because interval graphs are perfect. For a pod that is already stored, there is
-a stay that begins now and is allowed only in the present zone of the pod.
+place, ``[begin, end)``. The places of a zone are interchangeable. If at most :math:`k_z` stays
+overlap at any time, each stay can have a place to itself, because interval graphs are perfect. A
+pod that is already stored has a stay that begins now and is allowed only in the pod's current zone.
+(Weidinger, Boysen, Briskorn 2018 decide on single places, that is, zones of one place.)
 """
 
 from __future__ import annotations
@@ -34,8 +33,8 @@ class Stays:
     begin_s, end_s
         Begin and end of each stay, shape (S,), in s; every stay has a positive length.
     cost_s
-        Robot time of each stay in each zone (the way there and the way to the next station), shape
-        (S, Z), in s; +inf where the stay is not allowed.
+        Robot time of each stay in each zone: for the drive to the zone and for the drive from there
+        to the next station, shape (S, Z), in s; +inf where the stay is not allowed.
     capacity
         Number of places of each zone, shape (Z,).
 
@@ -61,16 +60,17 @@ class Stays:
 
     @cached_property
     def periods(self) -> tuple[NDArray[np.int64], NDArray[np.int64], int]:
-        """Find the fewest moments (*periods*) at which occupied places must be counted.
+        """The periods during which each stay is present, and the number of periods.
 
-        Until a stay ends, the number of stays present can only grow, so it suffices to count just
-        before each end that is the first after a begin; the stays then present form a maximal set
-        of simultaneous stays.
+        A *period* is a moment at which the occupied places must be counted. As the number of stays
+        present can only grow until a stay ends, it suffices to count just before each end that is
+        the first after a begin. The stays present at such a moment form a maximal set of
+        simultaneous stays.
 
         Returns
         -------
-        Index of the first period of each stay, and one more than the index of its last period, both
-        of shape (S,); and the number of periods.
+        Index of the first period of each stay, shape (S,); one more than the index of the last
+        period of each stay, shape (S,); and the number of periods.
         """
         ended = np.searchsorted(np.sort(self.end_s), self.begin_s, side="right")
         distinct, first = np.unique(ended, return_inverse=True)
@@ -88,11 +88,11 @@ class Stays:
         zone
             Zone of each stay, shape (S,).
         counted
-            The zone whose stays are counted.
+            Index of the zone whose stays are counted.
 
         Returns
         -------
-        Number of stays present, shape (periods,).
+        Number of stays present in the zone in each period, shape (periods,).
         """
         first, last, periods = self.periods
         change = np.zeros(periods + 1, np.int64)
@@ -115,7 +115,7 @@ def objective(data: Stays, zone: NDArray[np.int64]) -> float:
 
 
 def violations(data: Stays, zone: NDArray[np.int64]) -> list[str]:
-    """Return what is wrong with a choice of zones; empty if it is feasible.
+    """List the conditions that a choice of zones violates; empty if the choice is feasible.
 
     Parameters
     ----------

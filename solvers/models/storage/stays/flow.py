@@ -1,12 +1,12 @@
 r"""Stays in two zones as a minimum-cost flow: an optimal solution at any size.
 
-With two zones, a stay that is not in zone 0 is in zone 1. The :math:`k_0` places of zone 0 move
-along the periods as units of flow: a unit either waits from one period to the next or follows the
-arc of a stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. Of the :math:`present_t` stays
-present in period t, those that are not in zone 0 must fit into zone 1, so at most
-:math:`k_0 - (present_t - k_1)^+` units may wait in period t. (Carlisle and Lloyd 1995 solve the
-k-colouring of intervals as such a flow; the limit on waiting is added here.) For a stay that must
-be in zone 0, a unit is taken out of the flow when the stay begins and put back when it ends.
+With two zones, a stay that is not in zone 0 is in zone 1. Each of the :math:`k_0` places of zone 0
+is a unit of flow through the periods: from one period to the next, the unit waits (the place is
+empty), or it follows the arc of a stay. A stay in zone 0 saves :math:`c_{s1} - c_{s0}`. Of the
+:math:`present_t` stays present in period t, at most :math:`k_1` fit into zone 1, so at most
+:math:`k_0 - (present_t - k_1)^+` units may wait in period t. For a stay that must be in zone 0, a
+unit leaves the flow when the stay begins and returns when the stay ends. (Carlisle and Lloyd 1995
+solve the k-colouring of intervals as such a flow; the limit on waiting is added here.)
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the zone of each stay in a problem with two zones.
+    """Find the optimal zone of each stay in a problem with two zones.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def solve(
 
     Returns
     -------
-    The zone of each stay, shape (S,); work is the number of arcs.
+    The zone of each stay, shape (S,). Work is the number of arcs of the network.
 
     Raises
     ------
@@ -77,11 +77,12 @@ def solve(
 def _network(
     data: Stays, forced_near: NDArray[np.bool_], forced_far: NDArray[np.bool_]
 ) -> tuple[Network, NDArray[np.int64]]:
-    """Lay the places of zone 0 along the periods.
+    """Build the network of the flow.
 
     Returns
     -------
-    The network, whose first arcs wait and whose last ones are stays, and the stays of these arcs.
+    The network, in which the arcs for waiting come before those of stays; and the stays that have
+    an arc, in the sequence of the arcs.
     """
     first, last, periods = data.periods
     near_places, far_places = data.capacity.tolist()

@@ -1,6 +1,6 @@
-"""Stays choose zones in turn: those with the greatest cost difference per hour of the stay first.
+"""Stays choose zones in descending order of the cost difference between zones, per hour of stay.
 
-If this leaves a stay without a zone, all stays choose again, in the order in which they begin.
+If a stay finds no zone, all stays choose again, in the order in which they begin.
 """
 
 from __future__ import annotations
@@ -25,11 +25,12 @@ def solve(
 ) -> Solution[NDArray[np.int64]]:
     """Give each stay the cheapest zone that has room during the whole stay.
 
-    Stays with the largest cost difference between zones, per hour of the stay, choose first,
-    because a good place is better used by several short stays than by a long one. If that leaves a
-    stay without a zone, all stays choose again, in the order in which they begin. This second
-    sequence can fail only if a zone is forbidden for some stay, or if the zones together have too
-    few places. The bound is computed as if every stay had its cheapest zone, full or not.
+    The stays choose in sequence. Those with only one allowed zone come first, then those with the
+    largest cost difference between their worst and their best zone, divided by the length of the
+    stay: a good place is better used by several short stays than by a long one. If a stay finds no
+    zone, all stays choose again, in the order in which they begin. This second sequence can fail
+    only if a zone is forbidden for some stay, or if the zones together have too few places. The
+    bound is computed as if zones had room for any number of stays.
 
     Returns
     -------
@@ -54,7 +55,7 @@ def solve(
 
 
 def _at_stake(data: Stays) -> NDArray[np.intp]:
-    """Sort stays by the cost between their best and their worst zone per second, most first."""
+    """Sort stays by the cost difference of their worst and best zone per second, largest first."""
     allowed = np.isfinite(data.cost_s)
     worst = np.where(allowed, data.cost_s, -math.inf).max(axis=1, initial=-math.inf)
     best = data.cost_s.min(axis=1, initial=math.inf)
@@ -64,7 +65,7 @@ def _at_stake(data: Stays) -> NDArray[np.intp]:
 
 
 def _place(data: Stays, order: Iterable[int]) -> NDArray[np.int64] | None:
-    """Place stays in an order; None if one finds no zone."""
+    """Give stays their zones in the given order; return None if one finds no zone."""
     first, last, periods = data.periods
     room = np.repeat(data.capacity[:, np.newaxis], periods, axis=1)
     zone = np.full(len(data.cost_s), -1, np.int64)

@@ -19,7 +19,10 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the zone of each stay by branch and bound; of the limits, `nodes` and `gap` apply."""
+    """Find the optimal zone of each stay by branch and bound.
+
+    Of the limits, `nodes` and `gap` apply.
+    """
     return solve_by(
         highs.solve, lambda: formulate(data, whole=False), limits, seed=seed, start=start
     )

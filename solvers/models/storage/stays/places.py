@@ -12,10 +12,10 @@ from rmfs.solvers.models.storage.stays.data import Stays, violations
 
 
 def places(data: Stays, zone: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Give every stay, when it begins, the lowest-numbered free place of its zone.
+    """Give every stay the lowest-numbered place of its zone that is free when the stay begins.
 
     Places of a zone are numbered from 0. As stays are processed in the order in which they begin,
-    a zone needs no more places than it has stays at any one time (interval colouring).
+    a zone needs only as many places as it has stays at the same time (interval colouring).
 
     Parameters
     ----------

@@ -5,10 +5,11 @@ r"""The integer program, in which the number of pods in each zone is carried ove
     y_{zt} = y_{z,t-1} + \sum_{s \text{ begins in } t} x_{sz}
     - \sum_{s \text{ is over in } t} x_{sz}, \qquad 0 \le y_{zt} \le k_z
 
-where :math:`y_{zt}` is the number of pods in zone z in period t (`Stays.periods`). These rows are
-equivalent to one constraint per zone and maximal set of simultaneous stays, but the number of
-nonzeros grows linearly with the number of stays instead of quadratically. The rows of a single zone
-form a network matrix, so the relaxation is strong.
+where :math:`x_{sz}` is 1 if stay s is in zone z, and :math:`y_{zt}` is the number of pods in zone z
+in period t (`Stays.periods`); a stay *is over* in the first period after its last one. Each zone
+could instead have one constraint per maximal set of simultaneous stays. The rows above are
+equivalent, but the number of their nonzeros grows linearly with the number of stays, not
+quadratically. The rows of a single zone form a network matrix, so the relaxation is strong.
 """
 
 from __future__ import annotations
@@ -30,12 +31,12 @@ def program(data: Stays, *, whole: bool) -> LinearProgram:
     data
         The problem.
     whole
-        Whether y is declared integer. It is integer if x is; CP-SAT requires the declaration,
-        branch and bound does not.
+        Whether y is declared integer. CP-SAT requires the declaration. Branch and bound does not,
+        because y is integer whenever x is.
 
     Returns
     -------
-    The program; its first S * Z columns are x, stay by stay.
+    The program, whose first S * Z columns are x, stay by stay.
     """
     stays, zones = data.cost_s.shape
     first, last, periods = data.periods

@@ -1,4 +1,4 @@
-"""Assign classes of pods to zones of places in the steady state; zone prices rate places."""
+"""Assign classes of pods to zones of places in the steady state; compute prices of places."""
 
 from rmfs.solvers.models.methods import Methods
 from rmfs.solvers.models.storage.zones import clarabel, greedy

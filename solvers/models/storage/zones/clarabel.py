@@ -1,9 +1,9 @@
 """The optimal steady state, solved by the interior-point method Clarabel through cvxpy.
 
-For each pair of a number of classes and a number of zones, cvxpy compiles the problem into a cone
-program once. All values in `Zones` are parameters of that program (disciplined parametrised
-programming), so solving again with other values skips the compilation. Each solve starts cold, so
-its result depends on its input alone.
+For each problem size (number of classes and number of zones), cvxpy compiles the problem into a
+cone program once. All values in `Zones` are parameters of that program (disciplined parametrised
+programming), so solving again with other values skips the compilation. There is no warm start, so
+the result of a solve depends only on its input.
 """
 
 from __future__ import annotations
@@ -42,20 +42,21 @@ def solve(
     data
         The problem.
     limits
-        `iterations` limits the interior-point method; the plan is feasible and the bound valid
-        whenever it stops.
+        `iterations` limits the interior-point method. Even if the limit ends the solve, the plan is
+        feasible and the bound is valid.
     seed, start
         Not used.
 
     Returns
     -------
-    The plan, made exactly feasible, with its prices; work is the number of iterations. OPTIMAL
-    means a gap of at most `EXACT`, or the gap of the limits if that is larger.
+    The plan, made exactly feasible, with its prices. Work is the number of iterations. The status
+    is OPTIMAL if the gap is at most `EXACT` or at most the gap limit, otherwise FEASIBLE; it is
+    INFEASIBLE if there are fewer places than pods.
 
     Raises
     ------
     WallGuardError
-        If the wall-clock guard ran out.
+        If the solve took longer than the wall-clock guard allows.
     """
     begin = perf_counter()
     if not data.fits:
@@ -89,14 +90,14 @@ def solve(
 
 
 class _Programme:
-    """The program of one size.
+    """The compiled program for one problem size.
 
-    The traffic is a variable of its own, so that no product of two parameters occurs.
+    The traffic is a separate variable, so that no product of two parameters occurs.
 
     Parameters
     ----------
     classes, zones
-        Its size.
+        Number of classes and number of zones.
     """
 
     def __init__(self, classes: int, zones: int) -> None:

@@ -46,8 +46,8 @@ class Zones:
     places
         Number of places of each zone, shape (J,).
     congestion_s_h
-        Delay of a visit by a pod from each zone, divided by the traffic of the zone, shape (J,), in
-        s h.
+        Congestion coefficient of each zone, shape (J,), in s h: a visit by a pod from the zone is
+        delayed by this coefficient times the traffic of the zone.
 
     Raises
     ------
@@ -81,7 +81,7 @@ class Zones:
 
 
 def traffic_per_h(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the traffic of each zone, that is, the visits that its pods make, shape (J,), in 1/h.
+    """Return the number of visits per hour that the pods of each zone make, shape (J,).
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class ZonePlan:
     standing
         Number of pods of each class in each zone, shape (I, J).
     price_per_h
-        Robot time that one more place in the zone would save, for each zone, shape (J,), in s/h.
+        Robot time that one more place in each zone would save, shape (J,), in s/h.
     """
 
     standing: NDArray[np.float64]
@@ -126,7 +126,7 @@ def objective(data: Zones, plan: ZonePlan) -> float:
 
 
 def violations(data: Zones, plan: ZonePlan) -> list[str]:
-    """Return what is wrong with a plan; empty if it is feasible.
+    """List the conditions that a plan violates; empty if the plan is feasible.
 
     Parameters
     ----------

@@ -19,16 +19,20 @@ _PORTIONS = 16
 def solve(
     data: Zones, limits: Limits = NO_LIMITS, *, seed: int = 0, start: ZonePlan | None = None
 ) -> Solution[ZonePlan]:
-    """Place the classes by descending visit rate, in portions, each where a visit takes least time.
+    """Place the classes by descending visit rate, in portions, in the zones with fastest visits.
 
-    The time includes the delay that one more visit causes to itself and to other visits. The price
-    of a place in a zone is the robot time per hour that a pod there saves compared with the best
-    zone that still has room, taken for the class there that saves least. The price is never
-    negative, and it is 0 if the zone is empty or no zone has room.
+    Each portion goes to the zone with room in which a visit takes the least robot time. This time
+    includes the delay that one more visit causes to itself and to other visits.
+
+    The saving of a class in a zone is the robot time per hour that each of its pods saves there,
+    compared with the best zone that still has room. The price of a place in a zone is the smallest
+    saving of the classes in the zone, but at least 0; it is 0 if the zone is empty or no zone has
+    room.
 
     Returns
     -------
-    The plan; ties go to the lowest index.
+    The plan; ties go to the lowest index. The status is INFEASIBLE if there are fewer places than
+    pods.
     """
     begin = perf_counter()
     if not data.fits:
@@ -64,7 +68,7 @@ def solve(
 def _prices(
     data: Zones, standing: NDArray[np.float64], room: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Rate the places of each zone by the pods that stand there."""
+    """Return the price of a place in each zone, from the pods stored there."""
     free = np.flatnonzero(room > 0)
     if not free.size or not data.pods.size:
         return np.zeros(len(room))

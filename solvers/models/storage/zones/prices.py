@@ -10,17 +10,17 @@ causes, to itself and to others, at the traffic :math:`f_j`. As :math:`\gamma f^
     \sum_i m_i u_i - \sum_j k_j p_j - \sum_j \gamma_j f_j^2, \qquad
     u_i = \min_j r_i (t_{ij} + d_j) + p_j
 
-For an optimal plan and its prices, the bound equals the robot time. :math:`u_i`, the hourly cost of
-a pod of class i in its best zone, is called the *worth* of the pod. The rule rates the stay of a
-pod at a place by
+For an optimal plan and its prices, the bound equals the robot time. The *worth* of a pod of class i
+is :math:`u_i`, its hourly cost in its best zone. The rule rates a stay of a pod at a place by
 
 .. math::
 
     travel + d_j + stay \cdot (p_j - u_i)
 
-If travel is average and the stay lasts :math:`1 / r_i`, this is 0 for the zones in which an optimal
-plan stores the class, and at least 0 for all others. A short drive, or a stay that is untypical of
-the class, changes the ranking.
+where travel is the robot time for storing the pod at the place and for fetching it from there, and
+stay is the length of the stay in hours. If travel is :math:`t_{ij}` and stay is :math:`1 / r_i`,
+the rating is 0 for the zones in which an optimal plan stores the class, and at least 0 for all
+others. A shorter drive, or a stay that is untypical of the class, changes the ranking.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class Prices:
     place_per_h
         Price of a place in each zone, shape (J,), in s/h.
     delay_s
-        Delay that one more visit by a pod from the zone causes to itself and to other visits, for
-        each zone, shape (J,), in s.
+        Delay that one more visit by a pod from each zone causes to itself and to other visits,
+        shape (J,), in s.
     worth_per_h
         Cost of a pod of each class in its best zone, shape (I,), in s/h.
     """
@@ -85,7 +85,7 @@ def price_bound(data: Zones, plan: ZonePlan) -> float:
 
     Returns
     -------
-    The dual value, rounded down, in s/h.
+    The dual value in s/h, reduced by the largest possible rounding error.
     """
     prices = Prices.of(data, plan)
     given = data.pods * np.where(data.pods > 0, prices.worth_per_h, 0.0)
@@ -122,18 +122,18 @@ def place_values(
     pod_class: NDArray[np.int64],
     stay_h: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Rate places for pods: travel, delay, and price of the place minus worth of the pod.
+    """Rate each place for each pod by the rule of the module docstring.
 
-    The worth of a pod is its cost in its best zone. Price and worth are rates per hour and are
-    multiplied by the expected stay.
+    The rating is travel plus delay plus expected stay times the difference between the price of the
+    place and the worth of the pod.
 
     Parameters
     ----------
     prices
         Prices of the steady state.
     travel_s
-        Robot time of storing each pod at each place now and fetching it from there, shape (P, L),
-        in s; +inf where a pod may not be stored.
+        Robot time for storing each pod at each place now and for fetching it from there, shape
+        (P, L), in s; +inf where a pod may not be stored.
     zone
         Zone of each place, shape (L,).
     pod_class
@@ -143,7 +143,7 @@ def place_values(
 
     Returns
     -------
-    Robot time in s, shape (P, L); lower is better.
+    Rating of each place for each pod, shape (P, L), in s of robot time; lower is better.
     """
     rent = prices.place_per_h[zone] - prices.worth_per_h[pod_class][:, np.newaxis]
     values: NDArray[np.float64] = travel_s + prices.delay_s[zone] + stay_h[:, np.newaxis] * rent

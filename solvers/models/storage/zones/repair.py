@@ -11,8 +11,8 @@ from rmfs.solvers.models.storage.zones.data import Zones
 def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
     """Turn an almost feasible table of pods per class and zone into an exactly feasible one.
 
-    Negative numbers become 0, each row is scaled to the number of pods of its class, and excess
-    pods of a zone are moved to zones with room, lowest index first.
+    Negative numbers become 0. Each row is scaled so that its sum is the number of pods of the
+    class. Then excess pods of each zone are moved to zones with room, in the order of the zones.
 
     Parameters
     ----------

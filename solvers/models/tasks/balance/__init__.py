@@ -1,4 +1,4 @@
-"""Assign robots to tasks, with stations balanced and due times considered."""
+"""Assign robots to tasks; balance the queues of stations, and consider due times."""
 
 import numpy as np
 from numpy.typing import NDArray

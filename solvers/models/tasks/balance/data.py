@@ -7,10 +7,11 @@ r"""The problem: free robots, waiting tasks, stations with queues, due times.
     + \sum_s \sum_{k=1}^{n_s} (queue_s + k - 1)\, service_s
 
 where :math:`x_{rt}` is 1 if robot r does task t, w is the weight of lateness, and :math:`n_s \le
-room_s` is the number of robots sent to station s. The k-th of them finds :math:`queue_s + k - 1`
-pods before it, so each further robot sent to the same station costs more, which balances the
-stations. The waiting time is estimated for all robots sent to a station together and is not counted
-in the lateness, so the travel and lateness of one robot and its task do not depend on other pairs.
+room_s` is the number of robots sent to station s. The k-th of these robots waits for
+:math:`queue_s + k - 1` pods. So each further robot sent to the same station costs more, which
+balances the queues. The estimated waiting time depends only on the number of robots sent to a
+station, and it does not count as lateness. Therefore, the cost of travel and lateness of a robot
+with a task does not depend on the tasks of other robots.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ class Balance:
     ----------
     arrive_s
         Time until each robot would be at the station with the pod of each task, shape (R, T), in s;
-        +inf where it may not do the task.
+        +inf where the robot may not do the task.
     leave_s
         Cost of leaving each task for later, shape (T,), in s; +inf if it must be done.
     due_s
@@ -50,7 +51,7 @@ class Balance:
     room
         Maximum number of robots that may be sent to each station now, shape (S,).
     late_weight
-        Weight of a second of lateness, in seconds of travel. Default 1.
+        Cost of one second of lateness, in seconds of travel. Default 1.
 
     Raises
     ------
@@ -87,7 +88,7 @@ class Balance:
 
     @property
     def pairs(self) -> Matching:
-        """The matching problem without queues; each pair costs its travel and weighted lateness."""
+        """The problem without queues, as a matching with travel and weighted lateness as costs."""
         late_s = np.maximum(0.0, self.arrive_s - np.where(np.isinf(self.due_s), 0.0, self.due_s))
         counted = self.late_weight * np.where(np.isinf(self.due_s) | np.isinf(late_s), 0.0, late_s)
         return Matching(self.arrive_s + counted, self.leave_s)
@@ -107,28 +108,28 @@ class Balance:
 
 
 def objective(data: Balance, robot: NDArray[np.int64]) -> float:
-    """Return the cost of travel, lateness, waiting and tasks left, in s.
+    """Return the cost of travel, lateness, waiting and tasks left for later, in s.
 
     Parameters
     ----------
     data
         The problem.
     robot
-        Robot of each task, or `LEFT`, shape (T,).
+        Robot of each task, or `LEFT` if the task is left for later, shape (T,).
     """
     sent = np.bincount(data.station[robot != LEFT], minlength=len(data.room))
     return matching_objective(data.pairs, robot) + float(data.waiting_s(sent).sum())
 
 
 def violations(data: Balance, robot: NDArray[np.int64]) -> list[str]:
-    """Return what is wrong with a choice of robots; empty if it is feasible.
+    """List the conditions that a choice of robots violates; empty if the choice is feasible.
 
     Parameters
     ----------
     data
         The problem.
     robot
-        Robot of each task, or `LEFT`, shape (T,).
+        Robot of each task, or `LEFT` if the task is left for later, shape (T,).
     """
     found = matching_violations(data.pairs, robot)
     if robot.shape == data.station.shape:

@@ -1,11 +1,11 @@
-r"""Balanced dispatch as a minimum-cost flow.
+r"""Assignment of robots to tasks with balanced queues, as a minimum-cost flow.
 
-Each robot sends one unit: to a task and on to its station, or directly to the sink (idle). From
-station s to the sink there are arcs of capacity 1 with costs :math:`(queue_s + k - 1) service_s`,
-:math:`k = 1, 2, \dots`; as the costs increase, the cheapest arcs are used first and add up to the
-waiting time. The cost of leaving a task is charged in advance and refunded on the arc from the task
-to its station. A task that must be done absorbs the unit that it gets, and its station supplies
-another unit.
+Each robot sends one unit, either through a task and the station of the task to the sink or, if the
+robot stays idle, directly to the sink. From station s to the sink there are arcs of capacity 1 with
+costs :math:`(queue_s + k - 1) service_s`, :math:`k = 1, 2, \dots`. As the costs increase with k,
+the first arcs are used first, and their costs add up to the waiting time. The cost of leaving a
+task is charged in advance and refunded on the arc from the task to its station. A task that must be
+done has a demand of one unit instead of an arc to its station, and the station supplies one unit.
 """
 
 from __future__ import annotations
@@ -29,11 +29,12 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the robot of each task.
+    """Find the optimal robot of each task.
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); work is the number of arcs.
+    The robot of each task, or `LEFT` if the task is left for later, shape (T,). Work is the number
+    of arcs of the network.
     """
     begin = perf_counter()
     pair_s = data.pairs.travel_s

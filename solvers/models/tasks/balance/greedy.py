@@ -22,15 +22,16 @@ def solve(
 ) -> Solution[NDArray[np.int64]]:
     """Let tasks choose robots in order of due time; tasks that must be done come first.
 
-    A task is left if none of the remaining robots may do it, if its station has no room left, or if
-    leaving it costs no more than its travel, lateness and additional waiting. The bound is computed
-    as if a robot could do any number of tasks, and as if the queue at each station stayed as it is.
+    A task is left for later if none of the remaining robots may do it, if its station has no room
+    left, or if leaving it costs no more than its travel, lateness and additional waiting. The bound
+    is computed as if a robot could do any number of tasks, and as if the robots sent to a station
+    did not wait for each other.
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); ties go to the lowest index. The status is
-    INFEASIBLE if some task must be done and no robot may do it, and LIMIT if a task that must be
-    done is left for another reason.
+    The robot of each task, or `LEFT` if the task is left for later, shape (T,); ties go to the
+    lowest index. The status is INFEASIBLE if some task must be done and no robot may do it, and
+    LIMIT if a task that must be done is left for another reason.
     """
     begin = perf_counter()
     pair_s = data.pairs.travel_s.copy()

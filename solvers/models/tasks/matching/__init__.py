@@ -1,4 +1,4 @@
-"""Assign robots to tasks, at most one each, by travel time."""
+"""Assign at most one task to each robot, and at most one robot to each task, by travel time."""
 
 import numpy as np
 from numpy.typing import NDArray

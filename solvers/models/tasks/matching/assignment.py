@@ -1,4 +1,4 @@
-"""Optimal matching by linear assignment: each task gets a robot or is postponed."""
+"""Optimal matching by linear assignment: each task gets a robot or is left for later."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the robot of each task, or `LEFT`, by SciPy's shortest augmenting paths."""
+    """Find the optimal matching by SciPy's shortest augmenting path algorithm.
+
+    The values of the solution are the robot of each task, or `LEFT` if the task is left for later.
+    """
     return solve_by(data, "scipy")
 
 
 def solve_by(data: Matching, solver: Solver) -> Solution[NDArray[np.int64]]:
-    """Find the robot of each task by the given solver of assignment problems.
+    """Find the optimal matching by the given assignment solver.
 
     Parameters
     ----------
@@ -35,12 +38,13 @@ def solve_by(data: Matching, solver: Solver) -> Solution[NDArray[np.int64]]:
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); work is the number of cost entries read.
+    The robot of each task, or `LEFT` if the task is left for later, shape (T,). Work is the number
+    of cost table entries examined, both for the assignment and for its bound.
     """
     robots, tasks = data.travel_s.shape
 
     def table() -> NDArray[np.float64]:
-        """Tasks by robots, then what leaving each task costs."""
+        """Cost of each robot for each task, then the cost of leaving each task on a diagonal."""
         later = np.full((tasks, tasks), math.inf)
         np.fill_diagonal(later, data.leave_s)
         return np.hstack([data.travel_s.T, later])

@@ -5,9 +5,10 @@ r"""The problem: free robots and waiting tasks.
     \min \sum_{rt} travel_{rt}\, x_{rt} + \sum_t leave_t \Bigl(1 - \sum_r x_{rt}\Bigr), \quad
     \sum_r x_{rt} \le 1, \quad \sum_t x_{rt} \le 1
 
-where :math:`x_{rt}` is 1 if robot r does task t. The cost of leaving a task should be the cost of
-waiting for another robot; if it is infinite, the task must be done. Robots may stay idle. (In the
-literature, this is dispatching by the Hungarian method, but without the option to leave tasks.)
+where :math:`x_{rt}` is 1 if robot r does task t. The cost :math:`leave_t` of leaving task t should
+be the cost of waiting for another robot; if :math:`leave_t` is infinite, the task must be done.
+Robots may stay idle. (In the literature, solving this problem without the option to leave tasks is
+called dispatching by the Hungarian method.)
 """
 
 from __future__ import annotations
@@ -30,8 +31,8 @@ class Matching:
     Parameters
     ----------
     travel_s
-        Travel time of each robot to each task, shape (R, T), in s; +inf where it may not do the
-        task.
+        Travel time of each robot to each task, shape (R, T), in s; +inf where the robot may not do
+        the task.
     leave_s
         Cost of leaving each task for later, shape (T,), in s; +inf if it must be done.
 
@@ -51,14 +52,14 @@ class Matching:
 
 
 def objective(data: Matching, robot: NDArray[np.int64]) -> float:
-    """Return travel time plus the cost of tasks left, in s.
+    """Return the travel time plus the cost of tasks left for later, in s.
 
     Parameters
     ----------
     data
         The problem.
     robot
-        Robot of each task, or `LEFT`, shape (T,).
+        Robot of each task, or `LEFT` if the task is left for later, shape (T,).
     """
     done = robot != LEFT
     travel = data.travel_s[robot[done], np.flatnonzero(done)].sum()
@@ -66,14 +67,14 @@ def objective(data: Matching, robot: NDArray[np.int64]) -> float:
 
 
 def violations(data: Matching, robot: NDArray[np.int64]) -> list[str]:
-    """Return what is wrong with a choice of robots; empty if it is feasible.
+    """List the conditions that a choice of robots violates; empty if the choice is feasible.
 
     Parameters
     ----------
     data
         The problem.
     robot
-        Robot of each task, or `LEFT`, shape (T,).
+        Robot of each task, or `LEFT` if the task is left for later, shape (T,).
     """
     robots, tasks = data.travel_s.shape
     if robot.shape != (tasks,) or not ((robot >= LEFT) & (robot < robots)).all():

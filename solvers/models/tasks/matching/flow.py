@@ -17,5 +17,8 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Find the robot of each task, or `LEFT`, by cost scaling on integers."""
+    """Find the optimal matching by OR-Tools' cost-scaling algorithm, on integer costs.
+
+    The values of the solution are the robot of each task, or `LEFT` if the task is left for later.
+    """
     return solve_by(data, "min_cost_flow")

@@ -19,16 +19,17 @@ def solve(
     seed: int = 0,
     start: NDArray[np.int64] | None = None,
 ) -> Solution[NDArray[np.int64]]:
-    """Repeatedly match the pair that saves the most compared with leaving the task.
+    """Repeatedly match the robot and the task that save the most compared with leaving the task.
 
-    Tasks that must be done come first, in pairs by ascending travel time. The bound is computed as
-    if a robot could do any number of tasks.
+    Before that, tasks that must be done are matched, the pair with the shortest travel time first.
+    The bound is computed as if a robot could do any number of tasks.
 
     Returns
     -------
-    The robot of each task, or `LEFT`, shape (T,); ties go to the robot and task with the lowest
-    index. The status is INFEASIBLE if some task must be done and no robot may do it, and LIMIT if a
-    task that must be done is left for another reason.
+    The robot of each task, or `LEFT` if the task is left for later, shape (T,); ties go to the
+    robot with the lowest index, then to the task with the lowest index. The status is INFEASIBLE if
+    some task must be done and no robot may do it, and LIMIT if a task that must be done is left for
+    another reason.
     """
     begin = perf_counter()
     robots, tasks = data.travel_s.shape

@@ -1,4 +1,4 @@
-"""Task sequences per robot: the return of one pod is combined with the fetch of the next."""
+"""Task sequences of robots: the storing of one pod is combined with the fetching of the next."""
 
 from rmfs.solvers.models.methods import Methods
 from rmfs.solvers.models.tasks.sequence import columns, cp_sat, greedy, lns

@@ -1,18 +1,18 @@
 r"""A lower bound: routes are relaxed to pairs of a task and its predecessor.
 
-The relaxation ignores that each place is used at most once and that chains of tasks must begin at a
-robot; and it takes the earliest possible arrival of each task instead of the actual one. An
-assignment problem remains: task t follows robot r or task o, or is left. With
-:math:`s_o = \min_l store_{ol}`, following o costs
+The relaxation ignores that each place is used at most once and that each chain of tasks must begin
+at a robot. It uses the earliest possible arrival of each task instead of the actual one. What
+remains is an assignment problem: each task t directly follows a robot r or another task o, or is
+postponed. Let :math:`s_o = \min_l store_{ol}` be the time to store the pod of o at the nearest
+place. If t follows o, the cost of t is
 
 .. math::
 
     \min_l (store_{ol} + fetch_{lt}) - s_o + bring_t + s_t + w \max(0, e_t - due_t)
 
 where w is the weight of lateness and :math:`e_t` is the earliest arrival at the station of t over
-all chains; the other symbols are those of `TaskSequence`. The first difference is the time that the
-drive to the pod of t adds to storing the pod of o at its nearest place; :math:`s_o` itself is part
-of the cost of o.
+all chains; the other symbols are those of `TaskSequence`. The first two terms are the time that the
+drive to the pod of t adds to :math:`s_o`, which is part of the cost of o.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _ROUNDING = 2.0**-40
 
 
 def relaxed_bound(data: TaskSequence) -> float:
-    """Return a lower bound on the total cost of every feasible plan of routes.
+    """Return a lower bound on the total cost of all feasible routes.
 
     Parameters
     ----------
@@ -63,9 +63,11 @@ def relaxed_bound(data: TaskSequence) -> float:
 def from_robots(
     data: TaskSequence,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the times of the robots' drives to the pods of tasks that they may do first.
+    """Return times of the drives from the robots' initial positions to the pods of the tasks.
 
-    Robots that carry a pod drive via the best place, where they store it.
+    A robot that carries a pod first stores this pod, at the place for which the whole drive is
+    shortest. Its *storing time* is the duration of the drive to the nearest place; it is 0 for a
+    robot that carries no pod.
 
     Parameters
     ----------
@@ -74,10 +76,9 @@ def from_robots(
 
     Returns
     -------
-    Three arrays, in s, infinite for drives that are not allowed: the time at which each robot can
-    be at the pod of each task, shape (R, T); its drive there less its storing drive, shape (R, T);
-    and its storing drive, shape (R,). On the storing drive, the robot takes the pod that it carries
-    to the nearest place (the time is 0 if it carries none).
+    Three arrays, in s, infinite for drives that are not allowed: the earliest time at which each
+    robot can be at the pod of each task, shape (R, T); the duration of this drive minus the storing
+    time, shape (R, T); and the storing time of each robot, shape (R,).
     """
     through_s = shortest_over_places(data.stow_s, data.fetch_s)
     stowing_s = np.where(data.carrying, data.stow_s.min(axis=1, initial=math.inf), 0.0)
@@ -89,7 +90,12 @@ def from_robots(
 def _from_tasks(
     data: TaskSequence,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the time from one station to the next pod, what it adds, and storing itself."""
+    """Return times of the drives from the stations of tasks to the pods of next tasks.
+
+    As in `from_robots`, there are three arrays, in s: the time from the arrival at the station of
+    each task to the arrival at each other pod, shape (T, T); the duration of the drive minus the
+    storing time, shape (T, T); and the storing time, shape (T,).
+    """
     through_s = shortest_over_places(data.store_s, data.fetch_s)
     np.fill_diagonal(through_s, math.inf)
     storing_s = data.store_s.min(axis=1, initial=math.inf)

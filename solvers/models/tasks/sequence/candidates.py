@@ -23,11 +23,11 @@ class Ways:
     first
         Arcs of robots without a pod to their first tasks, shape (A, 2): robot, task.
     onward
-        Arcs via the place where an owner's pod is stored to the pod of the next task, shape (B, 3):
-        owner, place, task.
+        Arcs from owners, via the place where the owner's pod is stored, to the pod of the next
+        task, shape (B, 3): owner, place, task.
     last
-        Arcs to the place where an owner's pod is stored at the end of a route, shape (C, 2): owner,
-        place.
+        Arcs from owners to the place where the owner's pod is stored at the end of a route, shape
+        (C, 2): owner, place.
     complete
         Whether all arcs of the problem are included.
     """
@@ -56,13 +56,14 @@ def every_way(data: TaskSequence) -> Ways:
 
 
 def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> Ways:
-    """Return the shortest arcs, together with those of a plan, which thus remains feasible.
+    """Return the shortest arcs, together with the arcs of a plan, so that the plan stays feasible.
 
-    A task may follow an owner (see `Ways`) if it is one of the nearest tasks to that owner, or the
-    owner is one of the nearest to the task, by travel time via the best place. An arc is included
-    for each of the best places of such a pair. Likewise, a task may come first for a robot without
-    a pod if one is among the nearest to the other. A route may end at the places nearest to its
-    last station or, if it has no task, to its start.
+    A task may follow an owner (see `Ways`) if the task is among the tasks nearest to the owner or
+    the owner is among the owners nearest to the task, by travel time via the best place. For each
+    such pair, there is one arc for each of the best places. In the same way, a task may come first
+    for a robot without a pod if the task is among the nearest to the robot or the robot is among
+    the nearest to the task. A route may end at the places nearest to the station of its last task
+    or, without tasks, to the initial position of its robot.
 
     Parameters
     ----------
@@ -71,9 +72,9 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
     keep
         A plan.
     tasks
-        How many tasks, owners, or robots without a pod count as nearest.
+        Number of tasks, owners, or robots without a pod that count as nearest.
     places
-        Number of places kept for each pair of owner and task, and for the end of each route.
+        Number of places considered for each pair of owner and task, and for the end of each route.
 
     Returns
     -------
@@ -103,7 +104,7 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
 def shortest_over_places(
     to_place_s: NDArray[np.float64], from_place_s: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the shortest travel times via any place, computed row by row to save memory.
+    """Return the travel times via the best place, computed row by row to save memory.
 
     Parameters
     ----------
@@ -114,7 +115,7 @@ def shortest_over_places(
 
     Returns
     -------
-    Travel times via the best place, shape (M, N), in s; infinite if there is none.
+    Travel times via the best place, shape (M, N), in s; infinite if no place is possible.
     """
     shortest = np.full((len(to_place_s), from_place_s.shape[1]), np.inf)
     for row, way_s in enumerate(to_place_s):
@@ -137,7 +138,7 @@ def _owners_s(data: TaskSequence) -> NDArray[np.float64]:
 
 
 def _nearest(way_s: NDArray[np.float64], count: int) -> NDArray[np.bool_]:
-    """Mark the shortest ways of each row; ties go to the lowest index."""
+    """Mark the shortest drives of each row; ties go to the lowest index."""
     order = np.argsort(way_s, axis=1, kind="stable")[:, :count]
     marked = np.zeros(way_s.shape, bool)
     np.put_along_axis(marked, order, values=True, axis=1)
@@ -145,12 +146,12 @@ def _nearest(way_s: NDArray[np.float64], count: int) -> NDArray[np.bool_]:
 
 
 def _among_nearest(way_s: NDArray[np.float64], count: int) -> NDArray[np.bool_]:
-    """Mark ways that are among the shortest of their row or of their column."""
+    """Mark drives that are among the shortest of their row or of their column."""
     return _nearest(way_s, count) | _nearest(way_s.T, count).T
 
 
 def _without_loops(data: TaskSequence, onward: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Remove ways from a task to itself."""
+    """Remove arcs from a task to itself."""
     ways: NDArray[np.int64] = onward[onward[:, 0] != onward[:, 2] + data.robots]
     return ways
 
@@ -158,7 +159,7 @@ def _without_loops(data: TaskSequence, onward: NDArray[np.int64]) -> NDArray[np.
 def _ways_of(
     data: TaskSequence, routes: Routes
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return the ways that routes take, in the three tables of `Ways`."""
+    """Return the arcs that routes use, in the three tables of `Ways`."""
     first, onward, last = [], [], []
     for robot, tasks in enumerate(routes.tasks):
         owner, place = robot, int(routes.robot_place[robot])

@@ -1,15 +1,14 @@
 r"""The CP-SAT model of routes: circuits through robots, tasks and places.
 
-The nodes are a depot, the robots, the tasks, and for every pod to be stored (the pod of a task, or
-a pod that a robot carries) the places it may go to. A route runs from the depot to its robot, then
-alternately to tasks and places (a place comes first if the robot carries a pod), and back to the
-depot; an unused node has an arc to itself. Every place is used at most once. An arc from a place to
-task t imposes
+The nodes are a depot, the robots, the tasks, and the pairs of a pod to be stored (the pod of a
+task, or a pod that a robot carries) and a place where it may be stored. A route goes from the depot
+to its robot, then alternately to tasks and places (a place comes first if the robot carries a pod),
+and back to the depot. A node that is not used has an arc to itself. Every place is used at most
+once. An arc to task t from the node at which the pod of task o is stored at place l imposes
 
 .. math:: arrive_t \ge arrive_o + service_o + store_{ol} + fetch_{lt} + bring_t
 
-where o is the task whose pod is stored there; so places need no time variables. Times are whole
-milliseconds, so the solver's integers are exact.
+so places need no time variables. Times are whole milliseconds, so the solver's integers are exact.
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ _DEPOT = 0
 
 
 class Circuit:
-    """The model of one problem.
+    """The CP-SAT model of one problem.
 
     Nodes are numbered in this order: the depot (0), the robots, the tasks, then the pairs of owner
     and place. So the robot or task with owner number n (see `Ways`) is node 1 + n.
@@ -134,7 +133,7 @@ class Circuit:
             self.model.add(self._arrive[task] >= leaves + takes).only_enforce_if(arc)
 
     def _reach_every_node(self) -> None:
-        """Give nodes without any arc one that may not be used: the solver refuses bare nodes."""
+        """Give nodes without arcs an arc that may not be used: the solver requires arcs."""
         touched = {node for arc in self._arcs for node in arc}
         for node in range(1, 1 + self._data.robots + self._data.tasks):
             if node not in touched:

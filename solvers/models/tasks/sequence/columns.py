@@ -1,23 +1,25 @@
 r"""Routes by column generation: a bound over whole routes, and a choice among those generated.
 
 The linear program over all routes of all robots (`master`) is solved by adding routes that are
-cheap at its prices (`pricing`). For any prices :math:`v_t \ge 0` of tasks and :math:`w_l \ge 0` of
+cheap at its dual prices (`pricing`). For any prices :math:`v_t` of tasks and :math:`w_l \ge 0` of
 places, no plan costs less than
 
 .. math::
 
     \sum_t \min(v_t, skip_t) - \sum_l w_l + \sum_r \min_{p \in r} cost_p(v, w)
 
-where p runs over the routes of robot r (Lagrange; Desaulniers, Desrosiers, Solomon 2005, Column
-Generation, chapter 1). Prices are rounded to parts of a tick (a tick is a millisecond), and the
-pricing calculates with them in exact integers, so the bound holds to the last digit. It holds even
-if the search for a cheapest route ends early, because the search also bounds the cost of that route
-from below. All costs are whole ticks, so the bound is rounded up to a whole tick.
+where p runs over the routes of robot r, and :math:`cost_p(v, w)` is the cost of route p at these
+prices (a Lagrangian bound; Desaulniers, Desrosiers, Solomon 2005, Column Generation, chapter 1).
+Prices are rounded to parts of a tick (a tick is a millisecond), and `pricing` uses them in exact
+integer arithmetic, so the bound has no rounding error. The bound holds even if the search for a
+cheapest route ends early, because the search then returns a lower bound on the cost of that route.
+All costs are whole ticks, so the bound is rounded up to a whole tick.
 
-At the end HiGHS chooses one route per robot among those known. If a gap remains, all routes are
-listed whose cost at the prices of the best bound is less than that of the same robot's cheapest
-route plus the gap. No other route can be part of a better plan (Baldacci, Christofides, Mingozzi
-2008), so the best choice among the listed routes and those of the best plan known is an optimum.
+At the end, HiGHS chooses one route per robot among the known routes. If a gap remains between the
+plan and the bound, further routes are listed for each robot: all routes whose cost, at the prices
+of the best bound, exceeds that of the robot's cheapest route by less than the gap. No other route
+can be part of a better plan (Baldacci, Christofides, Mingozzi 2008). So the best choice among the
+listed routes and those of the best known plan is an optimum.
 """
 
 from __future__ import annotations
@@ -69,15 +71,15 @@ def solve(
     seed: int = 0,
     start: Routes | None = None,
 ) -> Solution[Routes]:
-    """Find routes and a bound.
+    """Find routes and a lower bound by column generation.
 
     Parameters
     ----------
     data
         The problem.
     limits
-        `deterministic_s` and `gap` apply. Default: none; the routes are then optimal, unless the
-        routes that could be part of a better plan are too many to be listed.
+        `deterministic_s` and `gap` apply. Default: none; the routes are then optimal, unless there
+        are too many routes to list (see the module).
     seed
         Seed of HiGHS. Default 0.
     start
@@ -92,7 +94,7 @@ def solve(
     ModelError
         If the start is not feasible.
     WallGuardError
-        If the wall-clock guard ran out.
+        If the solve took longer than the wall-clock guard allows.
     """
     began = perf_counter()
     if start is not None:
@@ -192,7 +194,7 @@ class _Search:
         return round(objective(self._data, self.routes) * TICKS_PER_S)
 
     def _apart(self) -> float:
-        """Return how far value and bound are apart, in ticks; 0 if that is near enough."""
+        """Return the gap between value and bound, in ticks; 0 if it is within the gap limit."""
         value = self._value()
         if value is None:
             return math.inf
@@ -244,7 +246,7 @@ class _Search:
         return new, complete
 
     def _remember(self, relaxed: Relaxed) -> bool:
-        """Forbid what the relaxation repeats; false if nothing."""
+        """Remember the places that the relaxation repeats; return whether there are any."""
         used = np.flatnonzero(relaxed.used > 1e-9).tolist()
         repeated = set[int]().union(*(self._master.routes[index].repeats for index in used))
         new = {place for place in repeated if not self._remembered[place]}

@@ -1,4 +1,4 @@
-"""Routes by CP-SAT, limited in deterministic time."""
+"""Routes by CP-SAT, with a limit in deterministic time."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def solve(
     start: Routes | None = None,
     ways: Ways | None = None,
 ) -> Solution[Routes]:
-    """Find the routes.
+    """Find routes of least cost by CP-SAT.
 
     Parameters
     ----------
@@ -55,16 +55,17 @@ def solve(
     Returns
     -------
     The routes, never worse than the start. The bound holds for routes over all arcs of the problem,
-    even if `ways` lacks some: it is that of `relaxed_bound`, or the solver's if that is better and
-    all arcs were considered. If some were not, the status is OPTIMAL only if the bound proves the
-    routes optimal; otherwise it is FEASIBLE, or LIMIT if no routes were found.
+    even if `ways` lacks some arcs. If all arcs were considered, the bound is the better of the
+    solver's bound and that of `relaxed_bound`. If some were not, the bound is that of
+    `relaxed_bound`; the status is OPTIMAL only if this bound proves the routes optimal, otherwise
+    FEASIBLE, or LIMIT if no routes were found.
 
     Raises
     ------
     ModelError
         If the start is not feasible.
     WallGuardError
-        If the wall-clock guard ran out.
+        If the solve took longer than the wall-clock guard allows.
     """
     begin = perf_counter()
     if start is not None:
@@ -109,7 +110,7 @@ def solve(
 
 
 def _without_proof(status: Status, value: float, bound: float, limits: Limits) -> Status:
-    """Return what a search over some ways says about all."""
+    """Return the status for all arcs after a search over some of them."""
     if status is Status.INFEASIBLE:
         return Status.LIMIT
     if status is Status.OPTIMAL and value - bound > limits.gap * abs(value):
@@ -118,7 +119,7 @@ def _without_proof(status: Status, value: float, bound: float, limits: Limits) -
 
 
 def _without_robots(data: TaskSequence, begin: float) -> Solution[Routes]:
-    """Leave everything."""
+    """Return the solution of a problem without robots: all tasks are postponed."""
     routes = Routes((), np.full(data.tasks, NONE, np.int64), np.zeros(0, np.int64))
     value = objective(data, routes)
     wall_s = perf_counter() - begin

@@ -1,13 +1,15 @@
 """The problem: robots, tasks and free places, with the times between them.
 
-A *task* consists of fetching a pod, bringing it to its station, having it served, and storing it at
-a free place. A robot does tasks one after another; a robot that initially carries a pod stores it
-first. The distance to the next pod depends on where the previous one is stored, so places are
-chosen together with the sequence of tasks. This is a generalised travelling-salesman problem as in
-Gharehgozli and Zaerpour 2020, with several robots and time windows.
+A *task* consists of fetching a pod, bringing it to a station, waiting there while it is served, and
+storing it at a free storage location (*place*). A robot does tasks one after another; a robot that
+initially carries a pod stores this pod first. The distance to the next pod depends on where the
+previous pod is stored, so places are chosen together with the sequence of tasks. This is a
+generalised travelling-salesman problem as in Gharehgozli and Zaerpour 2020, with several robots and
+time windows.
 
-Places vacated by fetched pods are not available within the same plan; a new plan is made before
-they matter (rolling horizon). Queues at stations are not modelled; the time windows represent them.
+Places from which pods are fetched do not become free within the same plan; with a rolling horizon,
+a new plan is made before these places are needed. Queues at stations are represented only by the
+time windows.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ SLACK_S = 1e-7
 class TaskSequence:
     """Robots, tasks and free places.
 
-    Times are rounded to milliseconds; +inf forbids a trip.
+    Times are rounded to milliseconds. A drive with time +inf is not allowed.
 
     Parameters
     ----------
@@ -56,10 +58,12 @@ class TaskSequence:
     store_s
         Drive from the station of each task to each place, set-down included, shape (T, L), in s.
     earliest_s, latest_s
-        Time window for the arrival at the station, shape (T,), in s. A robot that is early waits;
-        a task whose pod would arrive after the latest time (+inf: no limit) cannot be done.
+        Time window for the arrival of each task's pod at its station, shape (T,), in s. A robot
+        that is early waits; a task whose pod would be too late cannot be done. A latest time of
+        +inf means no limit.
     due_s
-        Time when the pod should be at the station, shape (T,), in s; +inf without a due time.
+        Time when the pod of each task should be at its station, shape (T,), in s; +inf without a
+        due time.
     skip_s
         Cost of postponing each task, shape (T,), in s; +inf if it must be done.
     late_weight
@@ -129,17 +133,17 @@ class TaskSequence:
 
 @dataclass(frozen=True)
 class Routes:
-    """The tasks of each robot, and the places of the pods.
+    """The tasks of each robot, and the places where pods are stored.
 
     Attributes
     ----------
     tasks
         The tasks of each robot in sequence, one tuple per robot.
     place
-        Where the pod of each task is stored, or `NONE` if the task is postponed, shape (T,).
+        Place where the pod of each task is stored, or `NONE` if the task is postponed, shape (T,).
     robot_place
-        Where each robot stores the pod that it carries initially, or `NONE` if it carries none,
-        shape (R,).
+        Place where each robot stores the pod that it carries initially, or `NONE` if it carries
+        none, shape (R,).
     """
 
     tasks: tuple[tuple[int, ...], ...]

@@ -1,7 +1,8 @@
-"""Cheapest insertion: tasks by urgency, each where it adds the least cost to a route.
+"""Cheapest insertion: each task, in order of urgency, is inserted where it adds the least cost.
 
 When a task is inserted, a place is chosen for its pod, and a new place may be chosen for the pod
-that the robot stores before it. Both choices take account of the drive to the pod fetched next.
+that the robot stores just before the task. Both choices take account of the robot's drive from the
+place to the next pod.
 """
 
 from __future__ import annotations
@@ -36,6 +37,9 @@ def solve(
 ) -> Solution[Routes]:
     """Insert tasks one by one: mandatory tasks before optional ones, in each group by urgency.
 
+    The urgency is given by the due time or the end of the time window, whichever is earlier. An
+    optional task is inserted only if this costs less than postponing it.
+
     Parameters
     ----------
     data
@@ -43,14 +47,14 @@ def solve(
     limits, seed
         Not used.
     start
-        Routes into which the remaining tasks are inserted. Default: robots only store the pods they
-        carry.
+        Feasible routes into which the remaining tasks are inserted. Default: robots only store the
+        pods that they carry.
 
     Returns
     -------
     The routes; ties are broken by the indices of robots and places. If a task that must be done
-    cannot be inserted, there are no routes, and the status is LIMIT. The bound is that of
-    `relaxed_bound`.
+    cannot be inserted, there are no routes; the status is then INFEASIBLE if the bound is infinite,
+    otherwise LIMIT. The bound is that of `relaxed_bound`.
 
     Raises
     ------
@@ -149,7 +153,7 @@ class _Plan:
     def _score(
         self, task: int, gaps: list[_Gap]
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
-        """Return the driving each insertion adds at best, and the two places it takes."""
+        """Return the least driving that each insertion adds, and the two places that it uses."""
         data = self._data
         free = np.flatnonzero(self._free)
         self.scored += len(gaps) * len(free)
@@ -175,7 +179,10 @@ class _Plan:
     def _approach(
         self, task: int, gap: _Gap, free: NDArray[np.int64], fetch_s: NDArray[np.float64]
     ) -> tuple[float, int, int]:
-        """Return what the way to the task adds, where the pod before it goes, and where it was."""
+        """Return the time that the drive to the task adds, and places of the pod stored before it.
+
+        The first place is the one chosen now, the second the one chosen so far.
+        """
         data = self._data
         if gap.before != NONE:
             now, store_s = int(self.place[gap.before]), data.store_s[gap.before]
@@ -192,7 +199,7 @@ class _Plan:
         return added_s, taken, now
 
     def _added(self, task: int, change: _Change) -> float:
-        """Return what an insertion adds to the objective."""
+        """Return the cost that an insertion adds."""
         gap = change.gap
         before = self._cost(gap.robot, self._tasks[gap.robot])
         kept = self.place.copy(), self._robot_place.copy()

@@ -1,12 +1,14 @@
 """Neighbourhood search: tasks are taken out of the routes and inserted again (Shaw 1998).
 
-A step takes a few tasks out of the routes. Then these tasks, and those postponed so far, are
+Most steps take a few tasks out of the routes. Then these tasks, and those postponed so far, are
 inserted in random order, each where it adds the least cost (a few positions are skipped at random).
-Other steps choose new places for some pods. Slightly worse routes are accepted at first (threshold
-accepting, Dueck and Scheuer 1990). Without a start, there are two initial plans: one has no tasks,
-and the other has at most one task per robot, found by assignment. The remaining tasks are inserted
-into both by urgency, and the search starts from the better result. The search is written in Rust:
-`rmfs/traffic/src/sequences`.
+The other steps choose new places for some pods. Slightly worse routes are accepted at first
+(threshold accepting, Dueck and Scheuer 1990).
+
+If no start is given, there are two initial plans: one has no tasks, and the other has at most one
+task per robot, found by assignment. The remaining tasks are inserted into each initial plan by
+urgency, and the search starts from the better result. The search is written in Rust
+(`rmfs/traffic/src/sequences`).
 """
 
 from __future__ import annotations
@@ -43,7 +45,7 @@ def solve(
     seed: int = 0,
     start: Routes | None = None,
 ) -> Solution[Routes]:
-    """Insert the remaining tasks into the start or two simple plans; then search for a better plan.
+    """Find routes by neighbourhood search, from given routes or from two simple plans.
 
     Parameters
     ----------
@@ -54,12 +56,14 @@ def solve(
     seed
         Seed of the search. Default 0.
     start
-        Feasible routes. Default: two simple plans (see the module).
+        Feasible routes, into which the remaining tasks are inserted before the search. Default: the
+        two initial plans of the module docstring.
 
     Returns
     -------
-    The routes, never worse than the start. The status is LIMIT if no routes were found that do all
-    tasks that must be done. The bound is that of `relaxed_bound`.
+    The routes, never worse than the start. If no routes with all tasks that must be done were
+    found, the status is INFEASIBLE if the bound is infinite, otherwise LIMIT. The bound is that of
+    `relaxed_bound`.
 
     Raises
     ------
@@ -114,7 +118,7 @@ def _compiled(data: TaskSequence) -> Sequences:
 
 
 def _owned(plan: Routes) -> tuple[list[list[int]], list[int]]:
-    """Return the tasks of each robot, and the place of each owner's pod: robots, then tasks."""
+    """Return the tasks of each robot, and the place of each owner's pod (robots before tasks)."""
     place: NDArray[np.int64] = np.concatenate([plan.robot_place, plan.place])
     return [list(tasks) for tasks in plan.tasks], place.tolist()
 

@@ -1,4 +1,4 @@
-r"""The restricted master program: which of the known routes are driven.
+r"""The restricted master program: choose one of the known routes for each robot.
 
 .. math::
 
@@ -6,9 +6,9 @@ r"""The restricted master program: which of the known routes are driven.
     \sum_{p \in r} x_p = 1, \quad \sum_{p \ni t} x_p + s_t = 1, \quad
     \sum_p n_{pl} x_p \le 1
 
-where :math:`x_p` is 1 if route p, which costs :math:`c_p`, is driven, :math:`s_t` is 1 if task t is
-postponed, and :math:`n_{pl}` is the number of times that route p uses place l; :math:`p \in r` are
-the routes of robot r, and :math:`p \ni t` the routes in which task t is done. Costs are in ticks
+Here :math:`x_p` is 1 if route p is chosen, and :math:`c_p` is its cost; :math:`s_t` is 1 if task t
+is postponed. Route p uses place l :math:`n_{pl}` times. The routes of robot r are denoted by
+:math:`p \in r`, and the routes in which task t is done by :math:`p \ni t`. Costs are in ticks
 (milliseconds).
 """
 
@@ -58,7 +58,7 @@ class Chosen(NamedTuple):
     Attributes
     ----------
     routes
-        One per robot; None if no feasible choice was found.
+        One route per robot; None if no feasible choice was found.
     bound
         Lower bound on the cost of every choice among the known routes, in ticks.
     iterations
@@ -71,12 +71,12 @@ class Chosen(NamedTuple):
 
 
 class Master:
-    """The master program; routes are added to it.
+    """The master program, to which routes can be added.
 
     Parameters
     ----------
     ticks
-        The problem.
+        The problem, with times in ticks.
 
     Attributes
     ----------
@@ -114,7 +114,7 @@ class Master:
         return True
 
     def _rows(self, route: Route) -> dict[int, int]:
-        """Return how often a route is counted in each row."""
+        """Return the coefficient of a route in each row."""
         ticks = self._ticks
         rows = {route.robot: 1}
         rows |= {ticks.robots + task: 1 for task in sorted(route.tasks)}

@@ -1,19 +1,20 @@
 r"""Cheapest routes of each robot, given prices of tasks and places, in exact integers.
 
-With prices :math:`v_t` earned by doing task t and :math:`w_l \ge 0` paid for using place l, a route
-costs
+If doing task t earns the price :math:`v_t`, and using place l costs the price :math:`w_l \ge 0`, a
+route costs
 
 .. math:: driving + lateness - \sum_{t \in route} v_t + \sum_{l \in route} w_l
 
 Places may repeat within a route unless they are *remembered*. This is a relaxation: the cheapest
 route found never costs more than the cheapest feasible one.
 
-The search extends routes task by task, the most promising first (A*). The estimate of the remaining
-cost allows tasks to be repeated and rounds times down to steps, so it is never too high. A partial
-route is dropped if another partial route to the same task is no later, costs no more, and has used
-no task (and no remembered place) that the dropped route has not used: every completion of the
-dropped route also completes the other, at no higher cost. Between two tasks, a place is ignored if
-the way via some other place that is not remembered takes and costs at most as much.
+The search extends partial routes task by task, the most promising first (A*). The estimate of the
+remaining cost allows tasks to be repeated and rounds times down to steps, so it is never too high.
+A partial route is dropped if another partial route to the same task arrives no later, costs no
+more, and has used only tasks and remembered places that the dropped route has used, too. Then every
+completion of the dropped route also completes the other, at no higher cost. Between two tasks, a
+place is ignored if there is another place, not remembered, via which the drive takes no longer and
+costs no more.
 
 All prices and costs are integers, in parts of a tick (1 tick = 1 ms = 1024 parts), so their sums
 are exact.
@@ -69,7 +70,7 @@ class Found(NamedTuple):
     routes
         Routes that cost less than the limit `below` of the search, the cheapest first.
     complete
-        Whether the search was exhaustive, not ended by a limit.
+        Whether the search considered all routes; False if a limit ended it.
     """
 
     bound: int
@@ -78,9 +79,9 @@ class Found(NamedTuple):
 
 
 class _Onward(NamedTuple):
-    """Ways from an owner to next tasks: one entry per task and place worth considering.
+    """Arcs from an owner to next tasks: one entry per task and place worth considering.
 
-    `uses` has the bits of both.
+    `uses` has the bit of the task and that of the place.
     """
 
     task: NDArray[np.int64]
@@ -102,7 +103,7 @@ class _Label(NamedTuple):
 
 
 class _Next(NamedTuple):
-    """What may follow a partial route: one of its ways (or `NONE`: its end), over a place.
+    """A continuation of a partial route: to a next task or, if `way` is `NONE`, to its end.
 
     Ordered by estimate, then by age.
     """
@@ -122,14 +123,14 @@ class Pricing:
     Parameters
     ----------
     ticks
-        The problem.
+        The problem, with times in ticks.
     prices
         Prices of tasks and places.
     remembered
-        Mask of the places that a route may use only once, shape (L,).
+        Whether each place is remembered, that is, may be used only once by a route, shape (L,).
     every
-        Whether to find all routes below a cost: all places are then remembered, and a route is
-        dropped only for another with the same tasks and the same places. Default: no.
+        Whether to find all routes below a cost. All places are then remembered, and a partial route
+        is dropped only in favour of another with the same tasks and the same places. Default: no.
 
     Attributes
     ----------
@@ -215,7 +216,7 @@ class Pricing:
     # --- estimates ------------------------------------------------------------------------------
 
     def _estimates(self) -> tuple[int, NDArray[np.int64]]:
-        """Return the length of a time step, and what follows an arrival at each task in it.
+        """Return the length of a time step in ticks, and the estimates of the remaining cost.
 
         Entry (q, t) is a lower bound on the cost after an arrival at t in step q or later.
         """
@@ -275,15 +276,15 @@ class Pricing:
         robot
             Index of the robot.
         below
-            Upper limit of the cost of a route, in parts of a tick.
+            Only routes that cost less than this are searched for; in parts of a tick.
         most
-            Number of routes after which the search ends.
+            Maximum number of routes; the search ends when it has found this number.
         labels
-            Number of partial routes after which the search is given up.
+            Maximum number of partial routes; the search ends when it has extended this number.
 
         Returns
         -------
-        The routes found, and a bound, which is at most `below`.
+        The routes found, and a lower bound on the cost of all routes of the robot, at most `below`.
         """
         start = _Label(0, int(self._ticks.ready[robot]), NONE, 0, (), ())
         heap = self._further(robot, start, below, 0)
@@ -321,7 +322,7 @@ class Pricing:
         return robot if label.last == NONE else self._ticks.robots + label.last
 
     def _superfluous(self, label: _Label, settled: list[_Label]) -> bool:
-        """Whether another partial route can replace this one, however it goes on."""
+        """Whether another partial route can replace this one, whatever its continuation."""
         self.entries += len(settled)
         for other in settled:
             if other.cost <= label.cost and other.time <= label.time:
@@ -331,7 +332,7 @@ class Pricing:
         return False
 
     def _further(self, robot: int, label: _Label, below: int, number: int) -> list[_Next]:
-        """Return the ends of a partial route and its continuations, numbered from a number on."""
+        """Return the ends of a partial route and its continuations, numbered from `number` on."""
         ticks, owner = self._ticks, self._owner(robot, label)
         leaves = label.time + (0 if label.last == NONE else int(ticks.service[label.last]))
         further = []

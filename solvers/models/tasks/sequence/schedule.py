@@ -7,7 +7,7 @@ The cost, which is minimised, is
     \sum driving + w \sum_{t \text{ done}} \max(0, arrive_t - due_t)
     + \sum_{t \text{ postponed}} skip_t
 
-where the first sum is over all drives, t is a task, and w is `late_weight`.
+in seconds, where the first sum is over all drives, t is a task, and w is `late_weight`.
 """
 
 from __future__ import annotations
@@ -49,15 +49,17 @@ def follow(
     robot
         The robot.
     tasks
-        Its tasks in sequence.
+        The robot's tasks in sequence.
     place
         Place where the pod of each task is stored, shape (T,).
     stowed
-        Where the robot stores the pod that it carries initially, or `NONE` if it carries none.
+        Place where the robot stores the pod that it carries initially, or `NONE` if it carries
+        none.
 
     Returns
     -------
-    Driving time, in s, and the arrival time at each task's station, in s.
+    The driving time, in s, and for each task of the route the time when its pod arrives at its
+    station, in s.
     """
     time_s, driving_s = float(data.ready_s[robot]), 0.0
     if stowed != NONE:
@@ -75,7 +77,7 @@ def follow(
 
 
 def lateness_s(data: TaskSequence, task: int, arrival_s: float) -> float:
-    """Return the weighted lateness of a task, in s; infinite after the end of its window.
+    """Return the weighted lateness of a task, in s; infinite if its time window is missed.
 
     Parameters
     ----------
@@ -92,7 +94,9 @@ def lateness_s(data: TaskSequence, task: int, arrival_s: float) -> float:
 
 
 def arrivals_s(data: TaskSequence, routes: Routes) -> NDArray[np.float64]:
-    """Return when the pod of each task arrives at its station, shape (T,), in s; nan if not done.
+    """Return the time when each task's pod arrives at its station, shape (T,), in s.
+
+    The time is nan for postponed tasks.
 
     Parameters
     ----------
@@ -128,7 +132,7 @@ def objective(data: TaskSequence, routes: Routes) -> float:
 
 
 def violations(data: TaskSequence, routes: Routes) -> list[str]:
-    """Return what is wrong with routes; empty if they are feasible.
+    """List the conditions that routes violate; empty if the routes are feasible.
 
     Parameters
     ----------

@@ -30,8 +30,8 @@ def without_tasks(data: TaskSequence) -> Routes | None:
 def first_tasks(data: TaskSequence) -> Routes | None:
     """Give each robot at most one task, at the least cost of driving, lateness and postponement.
 
-    At first, every pod is assumed to be stored at its best place, even if other pods are stored
-    there, too. Then the places are assigned so that driving is least.
+    First, the tasks are assigned as if any number of pods could share a place. Then different
+    places are assigned to the pods, at the least driving time.
 
     Parameters
     ----------
@@ -40,8 +40,8 @@ def first_tasks(data: TaskSequence) -> Routes | None:
 
     Returns
     -------
-    The routes, which may violate time windows and lack tasks that must be done; None if the pods
-    cannot all be stored at different places.
+    The routes, which may violate time windows and may postpone tasks that must be done; None if the
+    pods cannot all be stored at different places.
     """
     ready_s, way_s, _ = from_robots(data)
     arrive_s = np.maximum(ready_s + data.bring_s, data.earliest_s)
@@ -65,7 +65,7 @@ def first_tasks(data: TaskSequence) -> Routes | None:
 
 
 def _stored(data: TaskSequence, tasks: tuple[tuple[int, ...], ...]) -> Routes | None:
-    """Choose a place for every pod, at the least driving in total; None if there is none."""
+    """Choose a place for every pod, at the least total driving; None if that is impossible."""
     carriers = np.flatnonzero(data.carrying).tolist()
     way_s = [
         data.stow_s[robot] + (data.fetch_s[:, tasks[robot][0]] if tasks[robot] else 0.0)

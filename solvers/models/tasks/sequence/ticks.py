@@ -24,10 +24,10 @@ class Route(NamedTuple):
     robot
         Index of the robot.
     tasks
-        Its tasks, in sequence.
+        Tasks of the robot, in sequence.
     places
-        Where pods are stored, in sequence: first the pod that the robot carries, if any, then the
-        pods of the tasks.
+        Places where pods are stored, in sequence: first the pod that the robot carries initially,
+        if any, then the pods of the tasks.
     """
 
     robot: int
@@ -41,10 +41,11 @@ class Route(NamedTuple):
 
 
 class Ticks:
-    """The times of a problem in whole ticks (milliseconds); trips not allowed take `NEVER`.
+    """The times of a problem in whole ticks (milliseconds); `NEVER` replaces infinite times.
 
     The *owner* of a pod to be stored is the robot that carries it initially, or the task that
-    brings it to a station. Robot r has the owner number r, task t has R + t.
+    brings it to a station. Robot r has the owner number r; task t has R + t, where R is the number
+    of robots.
 
     Parameters
     ----------
@@ -73,7 +74,10 @@ class Ticks:
         return after
 
     def cost(self, route: Route) -> int:
-        """Return the driving and weighted lateness of a route whose trips are allowed, in ticks."""
+        """Return the driving time plus weighted lateness of a route, in ticks.
+
+        All drives of the route must be allowed.
+        """
         time, cost, at = int(self.ready[route.robot]), 0, NONE
         places = iter(route.places)
         if self.carrying[route.robot]:
@@ -101,7 +105,7 @@ def split(data: TaskSequence, routes: Routes) -> Iterator[Route]:
 
 
 def joined(data: TaskSequence, driven: Iterable[Route]) -> Routes:
-    """Combine routes of single robots; robots without a route do nothing."""
+    """Combine routes of single robots into a plan; robots without a route do nothing."""
     tasks: list[tuple[int, ...]] = [()] * data.robots
     place, robot_place = np.full(data.tasks, NONE), np.full(data.robots, NONE)
     for route in driven:
