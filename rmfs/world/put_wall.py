@@ -136,7 +136,7 @@ class PutWall:
         self.orders_packed = 0
 
     def has_room(self, order: int, *, last: bool) -> bool:
-        """Whether the wall has room for the next tote of an order; a tote without a slot needs none.
+        """Whether the next tote of an order would find room; one that needs no slot always does.
 
         Parameters
         ----------
