@@ -77,11 +77,12 @@ def plan(
     out: Out = None,
     jobs: Jobs = None,
     arms: Annotated[bool, typer.Option("--arms", help="List all arms.")] = False,
-    pilot: Annotated[bool, typer.Option(help="Make short runs to estimate the time.")] = True,
+    pilot: Annotated[bool, typer.Option(help="Estimate the time by short runs.")] = True,
 ) -> None:
     """Check a design: print its errors or, if there are none, its size and the estimated time.
 
-    The size is given by the factors with their levels, and by the numbers of arms and runs.
+    To show the size, the command prints the factors with their levels, and the numbers of arms and
+    runs.
     """
     from rmfs.experiments.complete import may_grow
     from rmfs.experiments.design.stages import schedule
@@ -134,15 +135,15 @@ def run(
         str | None,
         typer.Option(
             metavar="ADDRESS",
-            help="Address of a Dask scheduler, or a cluster profile (.toml), instead of this "
-            "machine.",
+            help="Make the runs on a cluster instead of this machine: address of a Dask scheduler, "
+            "or a cluster profile (.toml).",
         ),
     ] = None,
 ) -> None:
     """Make all runs of a design that are not finished yet.
 
-    The command can be interrupted and repeated. If runs fail, all others are made nevertheless, and
-    the exit code is 1.
+    If the command is interrupted, it can be repeated. If runs fail, the command still makes all
+    other runs, and the exit code is 1.
     """
     from rmfs.experiments.running import run as run_plan
     from rmfs.experiments.running.progress import watching
@@ -198,10 +199,13 @@ def table(
     columns: Columns = None,
     baseline: Annotated[
         str | None,
-        typer.Option(help="Baseline arm to which all others are compared, seed by seed."),
+        typer.Option(help="Baseline arm, with which all other arms are compared seed by seed."),
     ] = None,
     anova: Annotated[
-        bool, typer.Option("--anova", help="Analysis of variance of the factors instead.")
+        bool,
+        typer.Option(
+            "--anova", help="Show an analysis of variance of the factors instead of means."
+        ),
     ] = False,
     interactions: Interactions = True,
     confidence: Confidence = 0.95,
@@ -209,19 +213,24 @@ def table(
     by_factor: Annotated[
         bool,
         typer.Option(
-            "--by-factor", help="Show one column per factor instead of the names of arms."
+            "--by-factor", help="Show one column per factor instead of a column with names of arms."
         ),
     ] = False,
     across: Annotated[
         str | None,
         typer.Option(
-            metavar="FACTOR", help="Show the levels of this factor as columns, all others as rows."
+            metavar="FACTOR",
+            help="Show each level of this factor as a column; rows show the levels of all other "
+            "factors.",
         ),
     ] = None,
     file: FileOption = None,
     rows: Annotated[
         Path | None,
-        typer.Option(help="Write the rows themselves (reproducible columns) to a .csv file."),
+        typer.Option(
+            help="Write one row per run (only the reproducible columns) to this .csv file, instead "
+            "of printing the table."
+        ),
     ] = None,
     allow_incomplete: Lacking = False,
 ) -> None:
@@ -267,15 +276,17 @@ def plot(
     kind: Annotated[
         str,
         typer.Option(
-            help="Kind of plot: intervals (each seed of each arm), effects (of factors and "
-            "pairs of them), interaction (of pairs of factors), pareto (two columns), "
-            "progression (over time; the design must keep series)."
+            help="Kind of plot: intervals (with a point for each seed of each arm), effects (of "
+            "factors and of pairs of factors), interaction (of pairs of factors), pareto (of two "
+            "columns) or progression (over time; the design must keep the table series)."
         ),
     ] = "intervals",
     columns: Columns = None,
     factors: Annotated[
         list[str] | None,
-        typer.Option("--factor", help="interaction: a factor; at least two. [default: all]"),
+        typer.Option(
+            "--factor", help="For interaction: a factor to show; give two or more. [default: all]"
+        ),
     ] = None,
     interactions: Interactions = True,
     goals: Annotated[
@@ -283,18 +294,23 @@ def plot(
         typer.Option(
             "--goal",
             metavar="COLUMN=more|less",
-            help="pareto: which direction of a column is better. [default: from the data "
-            "dictionary]",
+            help="For pareto: whether more or less of a column is better. [default: as stated in "
+            "the data dictionary]",
         ),
     ] = None,
     confidence: Confidence = 0.95,
     file: Annotated[
         Path | None,
-        typer.Option("--file", "-f", help="A .png, .pdf or .svg file. [default: in the folder]"),
+        typer.Option(
+            "--file",
+            "-f",
+            help="The .png, .pdf or .svg file to write. [default: a .png file in the folder of "
+            "results]",
+        ),
     ] = None,
     allow_incomplete: Lacking = False,
 ) -> None:
-    """Plot the results.
+    """Plot the results of an experiment.
 
     If runs of the design are missing, a note on the plot says how many, and the exit code is 3,
     or 0 with --allow-incomplete.
@@ -335,7 +351,7 @@ def report(
     baseline: Annotated[
         str | None,
         typer.Option(
-            help="Baseline arm to which all others are compared. [default: the first]",
+            help="Baseline arm, with which all other arms are compared. [default: the first]",
             show_default=False,
         ),
     ] = None,
@@ -345,7 +361,7 @@ def report(
         typer.Option(
             "--file",
             "-f",
-            help="A .html file. [default: report.html in the folder]",
+            help="The .html file to write. [default: report.html in the folder of results]",
             show_default=False,
         ),
     ] = None,

@@ -19,7 +19,10 @@ Made = Annotated[
 ]
 Out = Annotated[
     Path | None,
-    typer.Option(help="Folder of the results. [default: results/NAME]", show_default=False),
+    typer.Option(
+        help="Folder of the results. [default: results/NAME, with the name of the design]",
+        show_default=False,
+    ),
 ]
 Jobs = Annotated[
     int | None,
@@ -27,7 +30,7 @@ Jobs = Annotated[
         "--jobs",
         "-j",
         min=1,
-        help="Number of parallel runs. [default: one per core]",
+        help="Number of runs at a time. [default: one per core]",
         show_default=False,
     ),
 ]
@@ -40,10 +43,15 @@ Columns = Annotated[
         show_default=False,
     ),
 ]
-Confidence = Annotated[float, typer.Option(min=0.5, max=0.999, help="Confidence of intervals.")]
+Confidence = Annotated[
+    float, typer.Option(min=0.5, max=0.999, help="Confidence level of the intervals.")
+]
 Interactions = Annotated[
     bool,
-    typer.Option("--interactions/--no-interactions", help="Also show interactions of two factors."),
+    typer.Option(
+        "--interactions/--no-interactions",
+        help="Also show interactions of two factors.",
+    ),
 ]
 Lacking = Annotated[
     bool,
@@ -53,7 +61,10 @@ Lacking = Annotated[
     ),
 ]
 Bootstrap = Annotated[
-    bool, typer.Option("--bootstrap", help="BCa bootstrap intervals instead of Student's t.")
+    bool,
+    typer.Option(
+        "--bootstrap", help="Use BCa bootstrap intervals instead of Student's t intervals."
+    ),
 ]
 FileOption = Annotated[
     Path | None,

@@ -25,7 +25,7 @@ Range = tuple[float, float]
 
 
 def calibrate(
-    target: Annotated[float, typer.Option(help="The desired mean.")],
+    target: Annotated[float, typer.Option(help="Desired mean of the column.")],
     between: Annotated[
         Range,
         typer.Option(
@@ -38,7 +38,7 @@ def calibrate(
     set_: SetOption = None,
     pacing: Annotated[str, typer.Option(metavar="MODE", help="As in rmfs run.")] = "instant",
     key: Annotated[
-        str, typer.Option(help="The parameter to calibrate.")
+        str, typer.Option(help="Parameter to calibrate.")
     ] = "scenario.demand.orders_per_h",
     column: Annotated[
         str,
@@ -50,15 +50,18 @@ def calibrate(
         float, typer.Option(help="Maximum deviation of the mean from the target.")
     ] = 0.02,
     confidence: Annotated[
-        float, typer.Option(help="Probability that the deviation is not larger.")
+        float, typer.Option(help="Probability that the deviation is within the tolerance.")
     ] = 0.95,
     search_seeds: Annotated[
-        int, typer.Option(help="Number of seeds at each level of the search.")
+        int, typer.Option(help="Number of seeds for each value of the parameter in the search.")
     ] = 4,
     test_seeds: Annotated[
-        int, typer.Option(help="Initial number of seeds of a test; every test uses new seeds.")
+        int,
+        typer.Option(
+            help="Initial number of seeds in a test of a value; each test uses new seeds."
+        ),
     ] = 10,
-    first_seed: Annotated[int, typer.Option(help="First seed.")] = 0,
+    first_seed: Annotated[int, typer.Option(help="Smallest seed.")] = 0,
     most_runs: Annotated[int, typer.Option(help="Maximum number of runs.")] = 2000,
     out: Annotated[
         Path | None,

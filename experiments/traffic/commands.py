@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rmfs.trips import TripRun, TripStream
 
 app = typer.Typer(
-    help="Compare path planners without orders: random trips, comparisons, growth with the fleet.",
+    help="Compare path planners, measure the growth of computing time, and optimise guidance.",
     no_args_is_help=True,
 )
 
@@ -33,20 +33,22 @@ LayoutArgument = Annotated[
     str, typer.Argument(metavar="LAYOUT", help="Name of a shipped layout, or a file.")
 ]
 Robots = Annotated[
-    int | None, typer.Option(min=1, help="Robots per tier. [default: those of the layout]")
+    int | None, typer.Option(min=1, help="Number of robots per tier. [default: as in the layout]")
 ]
-Seed = Annotated[int, typer.Option(min=0, help="Seed of the trips and of the planner.")]
-Duration = Annotated[float, typer.Option(min=1.0, help="Simulated seconds that are measured.")]
-Warmup = Annotated[float, typer.Option(min=0.0, help="Simulated seconds before measuring.")]
+Seed = Annotated[int, typer.Option(min=0, help="Seed of all random streams.")]
+Duration = Annotated[float, typer.Option(min=1.0, help="Measured time, in simulated seconds.")]
+Warmup = Annotated[float, typer.Option(min=0.0, help="Warm-up, in simulated seconds.")]
 Check = Annotated[bool, typer.Option("--check", help="Prove the motion free of collisions.")]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter of the layout."),
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Override a parameter of the layout; may be repeated."
+    ),
 ]
 Allow = Annotated[
     bool,
     typer.Option(
-        "--allow-not-well-formed", help="Drive on a layout in which robots may block each other."
+        "--allow-not-well-formed", help="Accept a layout in which robots may block each other."
     ),
 ]
 Out = Annotated[
@@ -55,25 +57,27 @@ Out = Annotated[
 Scenario = Annotated[
     Path | None,
     typer.Option(
-        help="Starts and goals of the robots on a .map: a .scen file of MovingAI.",
+        help="For a .map: a .scen file of MovingAI with the starts and goals of the robots.",
         show_default=False,
     ),
 ]
 Agents = Annotated[
     Path | None,
     typer.Option(
-        help="Starts of the robots on a .map, in the format of the League of Robot Runners.",
+        help="For a .map: file with the starts of the robots, in the format of the League of Robot "
+        "Runners.",
         show_default=False,
     ),
 ]
 Tasks = Annotated[
     Path | None,
     typer.Option(
-        help="Goals of the trips on a .map, in the format of the League of Robot Runners.",
+        help="For a .map: file with the goals of the trips, in the format of the League of Robot "
+        "Runners.",
         show_default=False,
     ),
 ]
-PLANNER_HELP = "Planner: NAME, or NAME:KEY=VALUE,KEY=VALUE with parameters"
+PLANNER_HELP = "Path planner: NAME, or NAME:KEY=VALUE,KEY=VALUE to set parameters"
 
 
 @app.command()
@@ -89,7 +93,7 @@ def bench(
     allow_not_well_formed: Allow = False,
     out: Out = None,
 ) -> None:
-    """Drive random trips, without orders, with one planner."""
+    """Simulate random trips, without orders, with one path planner."""
     duel(layout, robots, [planner], seed, duration, warmup, check, set_, allow_not_well_formed, out)
 
 
@@ -112,7 +116,7 @@ def duel(
     agents: Agents = None,
     tasks: Tasks = None,
 ) -> None:
-    """Compare planners on the same trips: random trips or, on a .map grid, trips from files."""
+    """Compare path planners on the same trips: random trips or, on a .map, trips from files."""
     names = planner or duels.all_planners()
     duels.check_planners(names)
     loaded, trips = _given(
@@ -147,7 +151,9 @@ def scale_command(
     planner: Annotated[str, typer.Option(help=f"{PLANNER_HELP}.")] = "time-windows:swift=true",
     duration: Duration = 600.0,
     seed: Seed = 1,
-    out: Annotated[Path, typer.Option(help="Folder of table and picture.")] = Path("results/scale"),
+    out: Annotated[Path, typer.Option(help="Folder for the table and the picture.")] = Path(
+        "results/scale"
+    ),
 ) -> None:
     """Measure how computing time and memory grow with the fleet at a constant density of robots."""
     from rmfs.experiments.traffic import scale
@@ -170,20 +176,23 @@ def warehouses_command(
     rules: Annotated[
         list[str] | None,
         typer.Option(
-            help="Controllers; may be repeated. [default: default, random]", show_default=False
+            help="Set of controllers; may be repeated. [default: default, random]",
+            show_default=False,
         ),
     ] = None,
     later: Annotated[
         float,
         typer.Option(
-            min=1.0, help="Start of the later measured window, in s; both windows last 600 s."
+            min=1.0,
+            help="Start of the second measured window, in simulated seconds. The first window "
+            "begins at 0; each window lasts 600 s.",
         ),
     ] = 1200.0,
     seed: Seed = 1,
     check: Check = False,
-    out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("results/scale"),
+    out: Annotated[Path, typer.Option(help="Folder for the table.")] = Path("results/scale"),
 ) -> None:
-    """Measure how the computing time grows with the fleet if the warehouse grows in proportion."""
+    """Measure how computing time grows with the fleet if the warehouse grows in proportion."""
     from rmfs.experiments.traffic import warehouses
 
     if not any(least <= site.robots <= most for site in warehouses.SITES):
@@ -206,7 +215,7 @@ def warehouses_command(
 @app.command("guide")
 def guide_command(
     layout: LayoutArgument,
-    out: Annotated[Path, typer.Option(help="File of guidance to write (.json).")],
+    out: Annotated[Path, typer.Option(help="Guidance file to write (.json).")],
     scenario: Annotated[
         str, typer.Option(help="Name of a shipped scenario, or a file.")
     ] = "default",
@@ -216,36 +225,46 @@ def guide_command(
     trips: Annotated[
         bool,
         typer.Option(
-            "--trips", help="Maximise the trips per hour of random trips, without orders, instead."
+            "--trips",
+            help="Simulate random trips, without orders, and maximise the number of trips per hour "
+            "instead of the objective.",
         ),
     ] = False,
     objective: Annotated[
-        str, typer.Option(help="Objective to maximise, as footprint columns: COLUMN=WEIGHT,...")
+        str,
+        typer.Option(
+            help="Objective to maximise, a weighted sum of footprint columns: COLUMN=WEIGHT,..."
+        ),
     ] = "trip_delay_mean_s=-1",
     seeds: Annotated[
         str,
         typer.Option(
-            help="Seeds of the runs, separated by commas; twice as many after the greatest decide "
-            "at the end."
+            help="Seeds of the runs, separated by commas. The final choice among the best results "
+            "is made with twice as many new seeds, which follow the greatest of these."
         ),
     ] = "1001,1002,1003",
     weights: Annotated[
         str | None,
         typer.Option(
-            help="Weights of features to start from, in s: FEATURE=WEIGHT,...", show_default=False
+            help="Weights of the features, in s, from which the search starts: FEATURE=WEIGHT,...",
+            show_default=False,
         ),
     ] = None,
     generations: Annotated[
-        int, typer.Option(min=0, help="Number of generations; 0: use --weights as they are.")
+        int,
+        typer.Option(
+            min=0,
+            help="Number of generations of the search; 0: no search, use the given --weights.",
+        ),
     ] = 10,
     population: Annotated[
-        int, typer.Option(min=4, help="Number of vectors of weights per generation.")
+        int, typer.Option(min=4, help="Number of weight vectors per generation.")
     ] = 8,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 1,
-    jobs: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
+    jobs: Annotated[int, typer.Option(min=1, help="Number of parallel processes.")] = 1,
     set_: SetOption = None,
 ) -> None:
-    """Optimise guidance, the extra costs of a layout's edges, over simulated runs."""
+    """Optimise guidance (extra costs of a layout's edges) on simulated runs."""
     from rmfs.experiments.traffic import guide, guide_tasks
 
     if out.suffix.lower() != ".json":

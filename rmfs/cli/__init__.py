@@ -104,7 +104,7 @@ def bench(
     ] = 5,
     out: Annotated[Path, typer.Option(help="Folder for the tables.")] = Path("results/bench"),
 ) -> None:
-    """Measure the speed of runs and where their time is spent."""
+    """Measure how fast runs are, and on which parts of the program they spend their time."""
     from rmfs.experiments import speed
 
     with progress("timing", wordy=False) as advance:
@@ -130,7 +130,7 @@ def import_command(
         ),
     ] = None,
 ) -> None:
-    """Import files of RAWSim-O; report what was left out, differs in rmfs, or was refused."""
+    """Import files of RAWSim-O; report what was left out, what differs, and what was refused."""
     from rmfs.rawsimo.folder import LIST, Imported, import_files
 
     def told(one: Imported) -> None:

@@ -26,9 +26,9 @@ def check(
         list[Path] | None,
         typer.Argument(
             metavar="[RUN]...",
-            help="Run folders with a trace: motion, stock, visits, orders, slots, bundles and "
-            "tables are audited from their files alone. Without a run folder, the inputs "
-            "given by the options are checked.",
+            help="Run folders with a trace. Motion, stock, visits, orders, slots, bundles and "
+            "tables of each run are audited from the files in its folder alone. Without a run "
+            "folder, the inputs given by the options are checked.",
             show_default=False,
         ),
     ] = None,

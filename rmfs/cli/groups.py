@@ -78,8 +78,10 @@ class LazyGroup(TyperGroup):
 def tell_defaults(command: Any) -> Any:
     """Add `[default: none]` to the help of each option without a default; return the command.
 
-    Sub-commands are included.
+    Help texts are shown as they are, since markup would hide what stands in brackets. Sub-commands
+    are included.
     """
+    command.rich_markup_mode = None
     for one in getattr(command, "commands", {}).values():
         tell_defaults(one)
     for parameter in command.params:

@@ -15,17 +15,19 @@ def plot(
     what: Annotated[
         list[str] | None,
         typer.Option(
-            help="Plot: progression, heat (or heat:COLUMN of its table), backlog, turnover, "
-            "stations, robots, pile-on, warmup; may be repeated. [default: all]",
+            help="Plot to draw: progression, heat (or heat:COLUMN, with a column of the table "
+            "heat), backlog, turnover, stations, robots, pile-on or warmup; may be repeated. "
+            "[default: all]",
             show_default=False,
         ),
     ] = None,
-    format_: Annotated[str, typer.Option("--format", help="png, svg or pdf.")] = "png",
+    format_: Annotated[str, typer.Option("--format", help="File format: png, svg or pdf.")] = "png",
     out: Annotated[
-        Path | None, typer.Option(help="Folder. [default: the run folder]", show_default=False)
+        Path | None,
+        typer.Option(help="Folder for the plots. [default: the run folder]", show_default=False),
     ] = None,
 ) -> None:
-    """Plot a run."""
+    """Plot the results of a run."""
     from rmfs.measure import load_run
     from rmfs.measure.pictures import PICTURES, save
 
@@ -41,7 +43,7 @@ def report(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="HTML file. [default: report.html in the run folder]", show_default=False
+            help="HTML file to write. [default: report.html in the run folder]", show_default=False
         ),
     ] = None,
     csv: Annotated[
@@ -65,19 +67,23 @@ def view(
         list[Path] | None,
         typer.Argument(
             metavar="[RUN [RUN]]",
-            help="Run folder with a trace, or two to show side by side; without one, the "
-            "page shows a form that starts a run.",
+            help="Run folder with a trace, or two such folders to show side by side. Without a "
+            "run folder, the page shows a form with which a run can be started.",
             show_default=False,
         ),
     ] = None,
     export: Annotated[
         Path | None,
-        typer.Option(help="Write one self-contained HTML file instead.", show_default=False),
+        typer.Option(
+            help="Write a self-contained HTML file instead of serving a page.", show_default=False
+        ),
     ] = None,
-    port: Annotated[int, typer.Option(min=0, max=65535, help="Port; 0: any free port.")] = 0,
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port of the page; 0: any free port.")
+    ] = 0,
     open_: Annotated[bool, typer.Option("--open/--no-open", help="Open a browser.")] = True,
 ) -> None:
-    """View a run in the browser: a replay of its trace."""
+    """Replay the trace of a run, or of two runs, in the browser."""
     from rmfs.view.commands import export_runs, serve_runs
 
     if export is None:
@@ -94,7 +100,7 @@ def compare(
         list[str],
         typer.Argument(
             metavar="A B ...",
-            help="Run folders, experiment folders, their arms (FOLDER#ARM), or tables.",
+            help="Run folders, experiment folders, arms of experiments (FOLDER#ARM), or tables.",
         ),
     ],
     columns: Annotated[

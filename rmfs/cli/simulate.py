@@ -44,7 +44,8 @@ def run(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Run folder. [default: below results/, named by inputs, changes and seed]",
+            help="Run folder. [default: a folder below results/, named after the inputs, the "
+            "changed parameters and the seed]",
             show_default=False,
         ),
     ] = None,
@@ -52,7 +53,7 @@ def run(
         bool,
         typer.Option(
             "--force",
-            help="Replace an existing run folder; start even if memory may not suffice.",
+            help="Replace an existing run folder, and start even if memory may not suffice.",
         ),
     ] = False,
     set_: SetOption = None,
@@ -60,8 +61,8 @@ def run(
         str,
         typer.Option(
             metavar="MODE",
-            help="How simulated time accounts for the optimisers' computation: instant, "
-            "wall, work, fixed=SECONDS or replay=RUN_DIR; parameters by --set "
+            help="How much simulated time the optimisers' computation takes: instant, wall, "
+            "work, fixed=SECONDS or replay=RUN_DIR. Parameters of the mode are set by --set "
             "pacing.KEY=VALUE.",
         ),
     ] = "instant",
@@ -69,8 +70,8 @@ def run(
     record: Annotated[
         Path | None,
         typer.Option(
-            help="Folder in which to record the arriving orders and bundles for replay "
-            "(orders.csv, bundles.csv).",
+            help="Folder in which to record the arriving orders and bundles (orders.csv, "
+            "bundles.csv), so that other runs can use them.",
             show_default=False,
         ),
     ] = None,
@@ -84,7 +85,9 @@ def run(
     ] = None,
     check: Annotated[
         bool,
-        typer.Option("--check", help="Prove the motion free of collisions; fills `collisions`."),
+        typer.Option(
+            "--check", help="Prove the motion free of collisions; fills the column `collisions`."
+        ),
     ] = False,
     allow_not_well_formed: NotWellFormedOption = False,
     measure: Annotated[
@@ -93,15 +96,15 @@ def run(
             "--measure",
             metavar="REF",
             help="Additional measure: path/to/file.py:Class, module:Class, or the name of an "
-            "installed one; may be repeated.",
+            "installed measure; may be repeated.",
         ),
     ] = None,
     checkpoint_every: Annotated[
         float | None,
         typer.Option(
             metavar="S",
-            help="Save the run every S simulated seconds, in FOLDER.checkpoint beside the "
-            "run folder, until it ends.",
+            help="Save the state of the run every S simulated seconds, in the file "
+            "FOLDER.checkpoint beside the run folder; the file is removed when the run ends.",
             show_default=False,
         ),
     ] = None,

@@ -31,7 +31,9 @@ Name = Annotated[str, typer.Argument(help="A .toml or .xconf file, or the name o
 def list_controllers(
     rules: Annotated[
         bool,
-        typer.Option("--rules", help="List the controllers for each decision problem instead."),
+        typer.Option(
+            "--rules", help="List all controllers by decision problem, instead of the sets."
+        ),
     ] = False,
 ) -> None:
     """List the shipped sets of controllers, or all available controllers."""
@@ -73,7 +75,7 @@ def import_command(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:
-    """Convert a RAWSim-O controller configuration, and report what is left out or differs."""
+    """Convert a RAWSim-O controller configuration; report what is left out and what differs."""
     if path.suffix.lower() != ".xconf":
         raise InputError(f"{path}: expected a .xconf file")
     target = out if out is not None else Path(f"{path.stem}.toml")

@@ -20,12 +20,12 @@ class CongestionParameters(Parameters):
     """Parameters of rules that can add the delay from congestion to travel times."""
 
     congestion: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Weight of the delay that congestion is expected to cause on a trip: 0 ignores it, 1 adds
-    it to the travel time."""
+    """The delay that congestion is expected to cause on a trip, times this weight, is added to the
+    travel time. With 0, congestion is ignored."""
     congestion_from: Annotated[str, pydantic.Field(min_length=1)] = "recent"
-    """Source of the expected delay: `recent` counts how long robots have waited in each part of the
-    floor, and forgets half of it within seven minutes; `forecast` also considers where robots are
-    going now; otherwise, the path of the table `heat` of an earlier run."""
+    """Source of the expected delay: `recent` (how long robots have waited in each part of the
+    floor; the weight of each wait halves about every seven minutes), `forecast` (as `recent`, but
+    adjusted to where robots are going now), or the path of the table `heat` of an earlier run."""
 
     def delay_s(
         self, view: View, waypoint: int, others: NDArray[np.integer]

@@ -75,7 +75,7 @@ class DummyRPS(ReplenishmentPodSelection[NoParameters]):
 class DummyPPS(PodSelection[LateBinding]):
     """Leaves the choice of pods to another controller.
 
-    The parameters determine which units are bound to pods that have been chosen (late binding).
+    The parameters determine which units are bound to the pods that the other controller chooses.
     """
 
     is_dummy: ClassVar[bool] = True

@@ -63,8 +63,8 @@ class ScoringParameters(Parameters):
     """Parameters of all network rules."""
 
     candidates: int = pydantic.Field(CANDIDATES, ge=1, le=1000)
-    """Maximum number of candidates that the network scores. If there are more, only those ranked
-    highest by `rmfs.control.features.RANKINGS` are scored."""
+    """Maximum number of candidates that the network scores. If there are more, only the best by the
+    ranking of the learning environment are scored."""
 
 
 class Layer(Model):

@@ -32,15 +32,14 @@ class RolloutParameters(Parameters):
     """Parameters of rollout rules."""
 
     base: Table = pydantic.Field(default_factory=dict)
-    """Base rule, given as a table of a controllers file. It makes the default decision and, in a
-    trial, all decisions after the one that is tried. Without a `name`, it is the default rule of
-    the problem."""
+    """The rule that makes the default decision and, in trials, all decisions after the tried one.
+    It is given by a table, as in a controllers file. Default: the default rule of the problem."""
     candidates: AtLeastOne = 4
     """Maximum number of decisions that are compared, including the decision of the base rule."""
     samples: AtLeastOne = 4
     """Maximum number of randomly drawn futures in which each decision is tried."""
     horizon_s: Positive = 180.0
-    """Simulated duration of a trial in seconds."""
+    """Duration of a trial in seconds of simulated time."""
     instants: AtLeastOne = 100_000
     """Limit on the effort of each comparison: once its trials have simulated this many instants
     (times at which something happens) in total, no further future is tried."""
@@ -48,9 +47,8 @@ class RolloutParameters(Parameters):
     """Required certainty: another decision replaces that of the base rule only if its mean
     advantage in the trials, divided by the standard error of this mean, exceeds this number."""
     goal: Goal = Goal()
-    """Weights that define the value of a trial: rewards for `units` picked, `orders` completed and
-    `units_stored`, and costs of seconds for which orders are overdue (`overdue_s`) and of metres
-    driven (`distance_m`)."""
+    """Weights of what happens in a trial: units picked, orders completed, units stored, seconds by
+    which orders are overdue, and metres driven. They define the value of the trial."""
 
 
 class TriesOut:

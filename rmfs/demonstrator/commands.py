@@ -46,20 +46,25 @@ Layout = Annotated[str, typer.Option(help="Name of a shipped layout, or a file."
 Real = Annotated[
     str | None,
     typer.Option(
-        metavar="I,J,...", help="Indices of the real robots. [default: all]", show_default=False
+        metavar="I,J,...",
+        help="Indices of the robots that connect to the server; the others are simulated. "
+        "[default: all]",
+        show_default=False,
     ),
 ]
 Tags = Annotated[
     Path | None,
     typer.Option(
-        help="File of the floor tags, with one line WAYPOINT;TAG for each. [default: W0, W1, ...]",
+        help="File of the floor tags, with a line WAYPOINT;TAG for each waypoint. [default: tags "
+        "W0, W1, ...]",
         show_default=False,
     ),
 ]
 Secret = Annotated[
     Path | None,
     typer.Option(
-        help=f"File of the shared secret. [default: environment variable {settings.SECRET}]",
+        help="File with the secret that server and robots share. [default: environment variable "
+        f"{settings.SECRET}]",
         show_default=False,
     ),
 ]
@@ -75,8 +80,9 @@ def demonstrate(
         str,
         typer.Option(
             metavar="URL",
-            help="Address to which robots connect: tcp://HOST:PORT; room://HOST:PORT for an "
-            "emulated room that keeps the clock; `emulated` also starts such a room.",
+            help="Address to which robots connect: tcp://HOST:PORT in real time, or "
+            "room://HOST:PORT for an emulated room that keeps the clock. The value `emulated` "
+            "also starts such a room.",
         ),
     ],
     layout: Layout = "demonstrator",
@@ -93,14 +99,13 @@ def demonstrate(
     out: Annotated[
         Path | None, typer.Option(help="Run folder. [default: below results/]", show_default=False)
     ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace the run folder if there is one.")
-    ] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing run folder.")] = False,
     past_failure: Annotated[
         bool,
         typer.Option(
             "--past-failure",
-            help="Resume a journal whose last tick failed, without the messages of that tick.",
+            help="Resume from a journal whose last tick failed, and ignore the messages received "
+            "in that tick.",
         ),
     ] = False,
     set_: Settings = None,
@@ -108,7 +113,7 @@ def demonstrate(
     allow_not_well_formed: Annotated[
         bool,
         typer.Option(
-            "--allow-not-well-formed", help="Use a layout in which robots may block each other."
+            "--allow-not-well-formed", help="Accept a layout in which robots may block each other."
         ),
     ] = False,
 ) -> None:
@@ -185,8 +190,8 @@ def emulate(
         str,
         typer.Option(
             metavar="URL",
-            help="Address of the server: room://HOST:PORT to keep the clock for it, faster than "
-            "real time; tcp://HOST:PORT in real time.",
+            help="Address of the server. With room://HOST:PORT, the room keeps the clock of the "
+            "server and runs faster than real time; with tcp://HOST:PORT, it runs in real time.",
         ),
     ],
     layout: Layout = "demonstrator",
@@ -197,17 +202,20 @@ def emulate(
     set_: Settings = None,
     speed_error: Annotated[
         float,
-        typer.Option(min=0.0, max=0.5, help="Largest relative error of the speed of a wheel."),
+        typer.Option(min=0.0, max=0.5, help="Largest relative error of a wheel's speed."),
     ] = 0.05,
     slip: Annotated[
         float,
         typer.Option(min=0.0, max=0.5, help="Largest share of a wheel's travel lost to slip."),
     ] = 0.01,
     missed_tags: Annotated[
-        float, typer.Option(min=0.0, max=0.5, help="Share of passages in which a tag is missed.")
+        float,
+        typer.Option(
+            min=0.0, max=0.5, help="Share of the passages over a tag in which the tag is not read."
+        ),
     ] = 0.02,
     lost_messages: Annotated[
-        float, typer.Option(min=0.0, max=0.5, help="Share of messages lost in each direction.")
+        float, typer.Option(min=0.0, max=0.5, help="Share of the messages lost in each direction.")
     ] = 0.01,
     delay_s: Annotated[
         float, typer.Option(min=0.0, max=1.0, help="Largest delay of a message in seconds.")
@@ -224,7 +232,7 @@ def emulate(
         float | None,
         typer.Option(
             min=0.0,
-            help="End after emulating this many seconds. [default: when the server ends; "
+            help="Emulated seconds after which the command ends. [default: when the server ends; "
             "with tcp://, never]",
             show_default=False,
         ),

@@ -31,12 +31,14 @@ LayoutArgument = Annotated[
     str,
     typer.Argument(
         metavar="LAYOUT",
-        help="Shipped layout, or a .toml, .json, .txt, .map, .xinst or .xlayo file.",
+        help="Name of a shipped layout, or a .toml, .json, .txt, .map, .xinst or .xlayo file.",
     ),
 ]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Override a parameter, e.g. robots=16."),
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Override a parameter, e.g. robots=16; may be repeated."
+    ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace a file that exists.")]
 
@@ -82,9 +84,9 @@ def list_layouts() -> None:
 def show(
     layout: LayoutArgument,
     out: Annotated[
-        Path | None, typer.Option(help="The .svg, .png or .pdf to write; default: NAME.svg.")
+        Path | None, typer.Option(help="The .svg, .png or .pdf file to write; default: NAME.svg.")
     ] = None,
-    arrows: Annotated[bool, typer.Option("--arrows", help="Show one-way directions.")] = False,
+    arrows: Annotated[bool, typer.Option("--arrows", help="Mark one-way edges by arrows.")] = False,
     settings: Settings = None,
 ) -> None:
     """Draw a layout."""
@@ -102,10 +104,14 @@ def check_command(
     settings: Settings = None,
     allow_not_well_formed: Annotated[
         bool,
-        typer.Option("--allow-not-well-formed", help="Fail only if the layout is impossible."),
+        typer.Option(
+            "--allow-not-well-formed",
+            help="Accept a layout in which robots may block each other; fail only if no run "
+            "is possible.",
+        ),
     ] = False,
 ) -> None:
-    """Check a layout; exit code 2 if a run would refuse it."""
+    """Check a layout; the exit code is 2 if a run would refuse the layout."""
     loaded, notes = load_with_notes(layout, _overrides(settings))
     _print_notes(notes)
     violations = check(loaded)
@@ -150,7 +156,7 @@ def convert(
     settings: Settings = None,
     force: Force = False,
 ) -> None:
-    """Write any layout as an explicit layout, waypoint by waypoint."""
+    """Convert a layout to an explicit layout (.json), which lists all waypoints."""
     loaded, notes = load_with_notes(layout, _overrides(settings))
     target = out if out is not None else Path(f"{Path(layout).stem}.json")
     _suffix(target, ".json")

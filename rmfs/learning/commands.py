@@ -24,21 +24,24 @@ def learn(
     layout: Annotated[str, typer.Option(help="Name of a shipped layout, or a file.")] = "small",
     scenario: Annotated[str, typer.Option(help="Name of a shipped scenario, or a file.")] = "small",
     controllers: Annotated[
-        str, typer.Option(help="Set of controllers, used for all problems that are not trained.")
+        str, typer.Option(help="Set of controllers; used for all problems that are not trained.")
     ] = "default",
     problems: Annotated[
         str, typer.Option(help="Problems to train: any of poa, pps, psa, ta, separated by commas.")
     ] = "poa,pps",
     objective: Annotated[
-        str, typer.Option(help="Objective to maximise, as footprint columns: COLUMN=WEIGHT,...")
+        str,
+        typer.Option(
+            help="Objective to maximise, a weighted sum of footprint columns: COLUMN=WEIGHT,..."
+        ),
     ] = "units_picked=1",
     seeds: Annotated[str, typer.Option(help="Seeds of the runs, separated by commas.")] = "1,2,3",
     generations: Annotated[int, typer.Option(min=1, help="Number of generations.")] = 20,
     population: Annotated[
-        int, typer.Option(min=4, help="Number of vectors of weights per generation.")
+        int, typer.Option(min=4, help="Number of weight vectors per generation.")
     ] = 10,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the search.")] = 1,
-    jobs: Annotated[int, typer.Option(min=1, help="Number of processes.")] = 1,
+    jobs: Annotated[int, typer.Option(min=1, help="Number of parallel processes.")] = 1,
     set_: SetOption = None,
 ) -> None:
     """Train linear rules by CMA-ES and write a controllers file for `rmfs run`."""

@@ -21,33 +21,45 @@ def learn_network(
     controllers: Annotated[
         str,
         typer.Option(
-            help="Set of controllers, used for all problems that are not trained; training starts "
-            "from its network rules."
+            help="Set of controllers; used for all problems that are not trained. For the others, "
+            "training starts from the network rules of the set, if it has any."
         ),
     ] = "default",
     problems: Annotated[
         str, typer.Option(help="Problems to train: any of poa, pps, psa, ta, separated by commas.")
     ] = "poa,pps,psa,ta",
     reward: Annotated[
-        str, typer.Option(help="Reward that PPO maximises, as rewards: NAME=WEIGHT,...")
+        str,
+        typer.Option(
+            help="Reward that PPO maximises, a weighted sum of named rewards: NAME=WEIGHT,..."
+        ),
     ] = "units=1",
-    steps: Annotated[int, typer.Option(min=1, help="Number of decisions in training.")] = 200_000,
+    steps: Annotated[
+        int,
+        typer.Option(
+            min=1, help="Number of decisions in training, rounded up to a multiple of 2048."
+        ),
+    ] = 200_000,
     objective: Annotated[
         str,
         typer.Option(
-            help="Objective by which the best rules are selected, as footprint columns: "
-            "COLUMN=WEIGHT,..."
+            help="Objective by which the best rules are selected, a weighted sum of footprint "
+            "columns: COLUMN=WEIGHT,..."
         ),
     ] = "units_picked=1",
     seeds: Annotated[
-        str, typer.Option(help="Seeds of the runs for the objective, separated by commas.")
+        str,
+        typer.Option(
+            help="Seeds of the runs in which the objective is computed, separated by commas."
+        ),
     ] = "1,2,3",
     checks: Annotated[
-        int, typer.Option(min=1, help="Number of times that the objective is calculated.")
+        int,
+        typer.Option(min=1, help="Number of times during training that the objective is computed."),
     ] = 10,
-    hidden: Annotated[int, typer.Option(min=1, help="Units in the hidden layer.")] = 16,
+    hidden: Annotated[int, typer.Option(min=1, help="Number of neurons in the hidden layer.")] = 16,
     candidates: Annotated[
-        int, typer.Option(min=1, help="Maximum number of candidates that are scored.")
+        int, typer.Option(min=1, help="Maximum number of candidates that are scored per decision.")
     ] = 16,
     gamma: Annotated[float, typer.Option(help="Discount factor per decision.")] = 0.99,
     learning_rate: Annotated[float, typer.Option(help="Initial learning rate.")] = 1e-3,
@@ -55,7 +67,8 @@ def learn_network(
         bool,
         typer.Option(
             "--average",
-            help="Subtract from each reward the mean reward of the time since the last decision.",
+            help="Subtract from each reward the mean reward per second times the seconds since "
+            "the last decision.",
         ),
     ] = False,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the weights and of PPO.")] = 1,

@@ -38,7 +38,7 @@ def _spread(theirs: str, ours: str) -> list[Mapped]:
 def _over_stations(theirs: str, ours: str, mean: str | None, note: str = "") -> list[Mapped]:
     """Map four columns that summarise stations to one column of the table `stations` of rmfs."""
     own = f"`stations.{ours}`{note}"
-    first = f"`{mean}` or the mean of {own}" if mean else f"mean of {own}"
+    first = f"`{mean}`, or the mean of {own}" if mean else f"mean of {own}"
     words = {"Avg": first, "Med": f"median of {own}"}
     words |= {"LQ": f"first quartile of {own}", "UQ": f"third quartile of {own}"}
     return [Mapped(theirs + end, words[end]) for end in _SPREAD]
@@ -60,7 +60,7 @@ def _names() -> list[Mapped]:
         Mapped("Instance", "`layout`"),
         Mapped("Setting", "`scenario`"),
         Mapped("Controller", "`controllers`"),
-        Mapped("Tag", "none: name the run folder, or the arms of a design, as you like"),
+        Mapped("Tag", "none: use the name of the run folder, or of the arm of a design"),
         *(Mapped(theirs, _RULE.format(ours)) for theirs, ours in rules.items()),
     ]
 
@@ -77,8 +77,8 @@ def _size() -> list[Mapped]:
         Mapped("BotsPerStation", "`robots` / (`pick_stations` + `replenishment_stations`)"),
         Mapped("BotsPerISTation", "`robots` / `replenishment_stations`"),
         Mapped("BotsPerOStation", "`robots` / `pick_stations`"),
-        Mapped("IStationCapacityAvg", "mean of `stations.capacity`"),
-        Mapped("OStationCapacityAvg", "mean of `stations.order_slots` of the pick stations"),
+        Mapped("IStationCapacityAvg", "mean of `stations.capacity` over replenishment stations"),
+        Mapped("OStationCapacityAvg", "mean of `stations.order_slots` over pick stations"),
         Mapped("SKUs", "`skus`"),
     ]
 
@@ -92,7 +92,7 @@ def _counts() -> list[Mapped]:
         Mapped("BundlesRejected", rejected),
         Mapped(
             "OrdersRejected",
-            f"{rejected}; `order_redraws` counts lines drawn again for lack of stock",
+            f"{rejected}; `order_redraws` counts order lines drawn again because stock was short",
         ),
         Mapped("BundlesInBacklogRemaining", "`backlog_bundles_end`"),
         Mapped("OrdersInBacklogRemaining", "`backlog_orders_end`"),
@@ -106,37 +106,42 @@ def _counts() -> list[Mapped]:
         Mapped("Collisions", "`collisions`, counted by the independent checker of the trace"),
         Mapped(
             "FailedReservations",
-            "`plan_failures`: searches that found no route; reservations of single segments are "
-            "not counted",
+            "`plan_failures`: searches that found no route; failed reservations of single segments "
+            "are not counted",
         ),
         Mapped(
-            "PathPlanningTimeouts", "none: planning is limited by counted work, not by wall time"
+            "PathPlanningTimeouts",
+            "none: path planning is limited by a number of search steps, not by wall time",
         ),
         Mapped("PathPlanningTimeoutFractional", "none, as for PathPlanningTimeouts"),
     ]
 
 
 def _motion() -> list[Mapped]:
-    optimal = "none in metres; `trips.unhindered_s` is a lower bound on the time of each trip"
-    trips = "of the trips to {} stations (`trips.station`)"
-    time = "mean of `trips.end_s` - `trips.start_s` "
+    optimal = "none in metres; `trips.unhindered_s` is a lower bound on the duration of each trip"
+    trips = "trips to {} stations (see `trips.station`)"
+    time = "mean of `trips.end_s` - `trips.start_s` over "
     pick, replenish = trips.format("pick"), trips.format("replenishment")
     return [
         Mapped("DistanceTraveled", "`distance_m`"),
         Mapped("DistanceTraveledPerBot", "`distance_per_robot_m`"),
         Mapped("DistanceEstimated", optimal),
         Mapped("DistanceRequestedOptimal", optimal),
-        Mapped("TimeMoving", "mean of `robots.moving_s`; `robot_moving_share`"),
-        Mapped("TimeQueueing", "mean of `robots.queueing_s`; `robot_queueing_share`"),
-        Mapped("TripDistance", "`distance_m` / `trips`"),
-        Mapped("TripTime", "`trip_time_mean_s` + sum of `robots.queueing_s` / `trips`"),
+        Mapped("TimeMoving", "mean of `robots.moving_s`; as a share of time, `robot_moving_share`"),
         Mapped(
-            "TripTimeWithoutQueueing", "`trip_time_mean_s`: our trips end where the queue begins"
+            "TimeQueueing",
+            "mean of `robots.queueing_s`; as a share of time, `robot_queueing_share`",
+        ),
+        Mapped("TripDistance", "`distance_m` / `trips`"),
+        Mapped("TripTime", "`trip_time_mean_s` + (sum of `robots.queueing_s`) / `trips`"),
+        Mapped(
+            "TripTimeWithoutQueueing",
+            "`trip_time_mean_s`: in rmfs, a trip to a station ends where the queue zone begins",
         ),
         Mapped("TripCount", "`trips`: trips between destinations of tasks, not between waypoints"),
-        Mapped("LastMileTripOStationCount", f"number {pick}"),
+        Mapped("LastMileTripOStationCount", f"number of {pick}"),
         Mapped("LastMileTripOStationTimeAvg", time + pick),
-        Mapped("LastMileTripIStationCount", f"number {replenish}"),
+        Mapped("LastMileTripIStationCount", f"number of {replenish}"),
         Mapped("LastMileTripIStationTimeAvg", time + replenish),
         Mapped(
             "OverallAssignedTasks",
@@ -160,30 +165,32 @@ def _visits() -> list[Mapped]:
             "PodsHandledPerOStationPerHour", "`pick_visits` / `pick_stations` / `duration_s` * 3600"
         ),
         Mapped("RepositioningMoves", "`tasks_reposition`"),
-        Mapped("PodsHandledPerIStationAvg", "mean of `stations.visits`, replenishment stations"),
+        Mapped(
+            "PodsHandledPerIStationAvg", "mean of `stations.visits` over replenishment stations"
+        ),
         Mapped(
             "PodsHandledPerIStationVar",
-            "population variance of `stations.visits`, replenishment stations",
+            "population variance of `stations.visits` over replenishment stations",
         ),
         Mapped(
             "PodsHandledPerOStationAvg",
-            "mean of `stations.visits`, pick stations (RAWSim-O averages over the replenishment "
+            "mean of `stations.visits` over pick stations (RAWSim-O averages over replenishment "
             "stations instead)",
         ),
         Mapped(
             "PodsHandledPerOStationVar",
-            "population variance of `stations.visits`, pick stations",
+            "population variance of `stations.visits` over pick stations",
         ),
     ]
 
 
 def _stock() -> list[Mapped]:
-    ranks = "none: how well pods are sorted is not measured; `pods.pick_visits` and "
-    ranks += "`pods.waypoint_end` show which pods were used how often and where they ended"
+    ranks = "none: rmfs does not measure how well pods are sorted; `pods.pick_visits` and "
+    ranks += "`pods.waypoint_end` show how often each pod was used, and where it was at the end"
     kinds = [f"Inv{s}{e}" for s in ("Combined", "Speed", "Utility") for e in _INVERSIONS]
-    stops = "none: pauses show in `series.orders_created` and `series.bundles_created`"
+    stops = "none: pauses are visible in `series.orders_created` and `series.bundles_created`"
     return [
-        Mapped("InventoryLevelAvg", "`inventory_share_mean`, exact over time"),
+        Mapped("InventoryLevelAvg", "`inventory_share_mean`, an exact time average"),
         Mapped("InventoryLevelLQ", "first quartile of `series.inventory_share`"),
         Mapped("InventoryLevelUQ", "third quartile of `series.inventory_share`"),
         Mapped("StorageLocationRanks", ranks),
@@ -229,18 +236,19 @@ def _times() -> list[Mapped]:
 
 
 def _stations() -> list[Mapped]:
-    ours = "over all visits, `late_bound_units_per_visit`"
+    ours = "for the mean over all visits, `late_bound_units_per_visit`"
     late = "`stations.late_bound_units` / `stations.visits`"
     words = {"Avg": "mean", "Med": "median", "LQ": "first quartile", "UQ": "third quartile"}
     bundled = "none: bundles added to a task in progress are not counted separately"
-    pick, replenish = ", pick stations", ", replenishment stations"
+    pick, replenish = " over pick stations", " over replenishment stations"
     down = " (all time without work; RAWSim-O counts only periods above a threshold)"
     return [
         *_over_stations("ItemPileOne", "units_per_visit", "units_per_visit"),
         *(
             Mapped(
                 f"InjectedItemPileOne{end}",
-                f"{words[end]} of {late}" + (f"; {ours}" if end == "Avg" else ""),
+                f"{words[end]} of {late} over pick stations"
+                + (f"; {ours}" if end == "Avg" else ""),
             )
             for end in _SPREAD
         ),
@@ -274,7 +282,7 @@ def _tasks() -> list[Mapped]:
         for t, o in kinds.items()
     ]
     return [
-        Mapped("TaskCountNone", "none: having no task is not counted as a task"),
+        Mapped("TaskCountNone", "none: in rmfs, having no task is not a kind of task"),
         Mapped("TaskTimeNone", "`robots` * `duration_s` - the sum of the times of all tasks"),
         *(one for pair in pairs for one in pair),
         Mapped("TaskTimeBusyAvg", "`robot_busy_share` * `duration_s`"),
@@ -294,9 +302,15 @@ def _states() -> list[Mapped]:
             "end",
         ),
         Mapped("StateTimeSetdown", transfer),
-        Mapped("StateCountGet", "`replenishment_visits`, in which `bundles_stored` were stored"),
+        Mapped(
+            "StateCountGet",
+            "`replenishment_visits`; the number of bundles stored in them is `bundles_stored`",
+        ),
         Mapped("StateTimeGet", served.format("replenishment")),
-        Mapped("StateCountPut", "`pick_visits`, in which `units_picked` were picked"),
+        Mapped(
+            "StateCountPut",
+            "`pick_visits`; the number of units picked in them is `units_picked`",
+        ),
         Mapped("StateTimePut", served.format("pick")),
         Mapped("StateCountRest", "`tasks_rest`"),
         Mapped("StateTimeRest", "sum of `robots.idle_s`"),
@@ -306,7 +320,10 @@ def _states() -> list[Mapped]:
         ),
         Mapped("StateCountEvade", "none: evading another robot is not recorded as a state"),
         Mapped("StateTimeEvade", "none, as for StateCountEvade"),
-        Mapped("StateCountElevator", "sum of `edges.passages` where `edges.ride`"),
+        Mapped(
+            "StateCountElevator",
+            "sum of `edges.passages` over the edges for which `edges.ride` is true",
+        ),
         Mapped("StateTimeElevator", "sum of `robots.riding_s`"),
     ]
 
@@ -329,7 +346,7 @@ def _timings() -> list[Mapped]:
         Mapped("TimingPathPlanningOverall", "`planning_wall_s`"),
         Mapped("TimingPathPlanningCount", "`plans` + `plan_failures` + `replans`"),
         *(
-            Mapped(f"Timing{theirs}{end}", f"`controllers.{column}` of {ours}")
+            Mapped(f"Timing{theirs}{end}", f"`controllers.{column}` of the problem {ours}")
             for theirs, ours in problems.items()
             for end, column in columns.items()
         ),
@@ -337,7 +354,7 @@ def _timings() -> list[Mapped]:
 
 
 def _free() -> list[Mapped]:
-    own = "none: a controller or an observer can record figures of its own (rmfs.measure.Observer)"
+    own = "none: to record further figures, write a measure (rmfs.measure.Measure)"
     problems = ("PP", "TA", "PC", "SA", "IS", "PS", "RP", "OB", "RB", "MM")
     tags = "none: the names and descriptions of the input files are in run.json"
     return [
@@ -369,7 +386,9 @@ FILES: tuple[Mapped, ...] = (
     Mapped("controller.txt", "run.json: controllers"),
     Mapped("footprint.csv", "footprint.csv with a header, footprint.parquet"),
     Mapped("statistics.txt", "report.html (rmfs report); tables robots, pods and stations"),
-    Mapped("stationstatistics.csv", "table stations; distribution of visit times: table visits"),
+    Mapped(
+        "stationstatistics.csv", "table stations; for the distribution of visit times, table visits"
+    ),
     Mapped("itemdescriptionstatistics.csv", "table skus (`skus.popularity`, `skus.lines_picked`)"),
     Mapped("itemprogression.csv", "table picks, with order and SKU"),
     Mapped("bundleprogression.csv", "table bundles"),
@@ -378,7 +397,8 @@ FILES: tuple[Mapped, ...] = (
     Mapped("orderplacementprogression.csv", "`orders.created_s`"),
     Mapped(
         "collisionprogression.csv",
-        "none: `collisions` counts them; rmfs run --check proves that there are none",
+        "none: rmfs run --check proves that there are no collisions, or else counts them in "
+        "`collisions`",
     ),
     Mapped("tripscompleted.csv", "table trips, with distance and `trips.station`"),
     Mapped("traveleddistanceprogression.csv", "`series.distance_m`"),
@@ -392,36 +412,41 @@ FILES: tuple[Mapped, ...] = (
     ),
     Mapped(
         "bundleordersituations.csv",
-        "`series.backlog_orders`, `series.backlog_bundles`; ages from `orders.created_s` and "
-        "`orders.assigned_s` (RAWSim-O mixes relative and absolute times)",
+        "`series.backlog_orders`, `series.backlog_bundles`; ages follow from `orders.created_s` "
+        "and `orders.assigned_s` (RAWSim-O mixes relative and absolute times)",
     ),
     Mapped(
         "stationprogression.csv",
-        "group the tables picks, bundles and visits by station and time; totals are in series",
+        "tables picks, bundles and visits, grouped by station and time; for totals, table series",
     ),
     Mapped(
         "botinfoprogression.csv", "`series.robots_queueing`, `series.robots_task_pick` and so on"
     ),
-    Mapped("wellsortedness.csv", "none: how well pods are sorted is not measured"),
-    Mapped("connectionstatistics.csv", "table connections; traffic on each edge: table edges"),
+    Mapped("wellsortedness.csv", "none: rmfs does not measure how well pods are sorted"),
     Mapped(
-        "pathfinding.csv", "`planning_wall_s`, `plans` of the run; single calls are not recorded"
+        "connectionstatistics.csv", "table connections; for the traffic on each edge, table edges"
+    ),
+    Mapped(
+        "pathfinding.csv",
+        "`planning_wall_s` and `plans`, for the whole run; if searches take simulated time, table "
+        "plans lists them",
     ),
     Mapped(
         "locationspolled.heat",
-        "table heat, by task; exact counts instead of samples, such as `heat.pick_visits`",
+        "table heat, with exact counts by task (such as `heat.pick_visits`) instead of samples",
     ),
     Mapped("trips.heat", "table connections, grouped by waypoint and `connections.to_kind`"),
     Mapped(
-        "storagelocationinfopolled.heat", "none: scores of pods are not recorded; see table pods"
+        "storagelocationinfopolled.heat",
+        "none: scores of pods are not recorded; table pods has other figures of each pod",
     ),
     Mapped("output.log", "the error stream of the command"),
     Mapped("tags.csv", "none, as for Tag"),
     Mapped("exception.txt", "the error stream and the exit code"),
     Mapped(
         "debug.xinst",
-        "none: it shows robots that overlap; in rmfs they never do, and the checker would report "
-        "it",
+        "none: the file shows overlapping robots; in rmfs, robots never overlap, and the checker "
+        "of the trace would report it",
     ),
 )
 """RAWSim-O's output files."""
@@ -432,21 +457,21 @@ def markdown() -> str:
     lines = [
         "## Measures",
         "",
-        "The tables show where to find the figures of each column of RAWSim-O's footprint and of",
-        "each file that it writes. Names in backticks are columns of `footprint`, or",
-        "`table.column`; all are explained in the [data dictionary](data-dictionary.md).",
-        "RAWSim-O takes quartiles from the sorted list; ours are interpolated. This part is",
-        "generated by `python -m tests.tools.pages`.",
+        "These tables show where rmfs reports the figures in each column of RAWSim-O's footprint",
+        "and in each file that RAWSim-O writes. A name in backticks is a column of `footprint` or,",
+        "in the form `table.column`, of another table; the [data dictionary](data-dictionary.md)",
+        "explains all columns. RAWSim-O uses elements of the sorted list as quartiles; rmfs",
+        "interpolates between elements. This part is generated by `python -m tests.tools.pages`.",
         "",
         "### Footprint",
         "",
-        "| # | RAWSim-O | here |",
+        "| # | RAWSim-O | rmfs |",
         "|---:|---|---|",
         *(f"| {number} | {one.theirs} | {one.ours} |" for number, one in enumerate(COLUMNS, 1)),
         "",
         "### Files",
         "",
-        "| RAWSim-O | here |",
+        "| RAWSim-O | rmfs |",
         "|---|---|",
         *(f"| {one.theirs} | {one.ours} |" for one in FILES),
         "",

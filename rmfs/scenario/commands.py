@@ -25,7 +25,9 @@ from rmfs.scenario.toml import to_toml
 from rmfs.scenario.writing import write_scenario
 
 app = typer.Typer(
-    name="scenario", help="List, show, check, import, export scenarios.", no_args_is_help=True
+    name="scenario",
+    help="List, show, check, import, fit and export scenarios.",
+    no_args_is_help=True,
 )
 
 Name = Annotated[
@@ -61,7 +63,7 @@ def show(scenario: Name, settings: Settings = None) -> None:
 
 @app.command()
 def check(scenario: Name, settings: Settings = None) -> None:
-    """Check a scenario and its files; report an error or else what the scenario contains."""
+    """Check a scenario and its files; print the error or, if there is none, a summary."""
     config = _loaded(scenario, settings)
     skus = sku_set(config.skus)
     anywhere = Site(1, 1, capacity=math.inf, largest_pod=math.inf)
@@ -99,9 +101,7 @@ def import_command(
 def convert(
     layout: Annotated[
         str,
-        typer.Argument(
-            metavar="LAYOUT", help="Format of the files: instacart, online-retail, jd or olist."
-        ),
+        typer.Argument(metavar="LAYOUT", help="Data set: instacart, online-retail, jd or olist."),
     ],
     files: Annotated[
         list[Path], typer.Argument(metavar="FILE...", help="The .csv files of the data set.")
@@ -122,7 +122,7 @@ def convert(
     share: Annotated[
         float, typer.Option(min=1e-6, max=1.0, help="Share of the orders to use, drawn at random.")
     ] = 1.0,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the draw of orders.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed for the draw of orders.")] = 0,
     force: Force = False,
 ) -> None:
     """Convert a public data set, which you have downloaded, to a file of orders."""
@@ -147,18 +147,29 @@ def twin(
     table: Annotated[
         Path | None,
         typer.Option(
-            help=".csv file to write, with parameters, 95 % intervals and fit. [default: none]",
+            help="The .csv file to write, with the parameters, their 95 % intervals, and tests of "
+            "the fit. [default: none]",
             show_default=False,
         ),
     ] = None,
     weekly: Annotated[
         bool,
-        typer.Option("--weekly", help="Fit rates for each hour of the week instead of the day."),
+        typer.Option(
+            "--weekly",
+            help="Fit an arrival rate to each hour of the week instead of each hour of the day.",
+        ),
     ] = False,
     listed: Annotated[
-        bool, typer.Option("--listed", help="Keep the popularity of each SKU, without its name.")
+        bool,
+        typer.Option(
+            "--listed",
+            help="Store the popularity of each SKU (without the name of the SKU) in a file beside "
+            "the scenario, instead of fitting a gamma distribution.",
+        ),
     ] = False,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the twin's SKUs.")] = 0,
+    seed: Annotated[
+        int, typer.Option(min=0, help="Seed for the SKUs that the scenario generates.")
+    ] = 0,
     force: Force = False,
 ) -> None:
     """Fit a scenario to a file of orders; the scenario can be published instead of the file."""
@@ -190,15 +201,16 @@ def export(
     ] = "orders",
     seed: Annotated[int, typer.Option(min=0, help="Seed of all random streams.")] = 0,
     pick_stations: Annotated[
-        int, typer.Option(min=1, help="Number of pick stations, for rates per station.")
+        int, typer.Option(min=1, help="Number of pick stations; needed for rates per station.")
     ] = 4,
     replenishment_stations: Annotated[
-        int, typer.Option(min=1, help="Number of replenishment stations, for rates per station.")
+        int,
+        typer.Option(min=1, help="Number of replenishment stations; needed for rates per station."),
     ] = 4,
     settings: Settings = None,
     force: Force = False,
 ) -> None:
-    """Write the orders or bundles of a scenario, if they do not depend on the run."""
+    """Write the orders or bundles of a scenario to a file, if they do not depend on the run."""
     _vacant(path, force=force)
     site = Site(pick_stations, replenishment_stations, capacity=math.inf, largest_pod=math.inf)
     written = export_stream(_loaded(scenario, settings), what, path, site, seed)
@@ -210,7 +222,8 @@ def sku_set_command(
     scenario: Annotated[
         str,
         typer.Argument(
-            metavar="SCENARIO", help="A scenario, or a SKU set: .json, .xgenc or .xitem."
+            metavar="SCENARIO",
+            help="A scenario, or a file with a SKU set (.json, .xgenc or .xitem).",
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="The .json file (rmfs-skus/1) to write.")] = None,
@@ -221,7 +234,7 @@ def sku_set_command(
     settings: Settings = None,
     force: Force = False,
 ) -> None:
-    """Describe the SKUs of a scenario or file; on request, write them or plot their popularity."""
+    """Describe the SKUs of a scenario or file; optionally write them or plot their popularity."""
     skus = _skus(scenario, settings)
     typer.echo(f"{scenario}: {summary(skus)}, digest {skus.digest()}")
     if out is not None:

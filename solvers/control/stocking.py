@@ -74,35 +74,39 @@ class StockingParameters(SearchParameters):
     """Parameters of RPS stocking."""
 
     method: Method = "highs"
-    """Solution method: HiGHS (at its root node), CP-SAT, rounding of the relaxation, or the greedy
-    rule."""
+    """Solution method: `highs` (HiGHS, at its root node), `cp_sat` (CP-SAT), `rounding` (rounding
+    of the linear relaxation) or `greedy` (the greedy rule)."""
     buffer_s: NotNegative = 30.0
-    """Minimum seconds between two questions, so that one question covers several decisions."""
+    """Minimum time in seconds between two questions to the optimiser, so that one question covers
+    several decisions."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.05
-    """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
+    """With the method `cp_sat`, limit on the effort of the search in deterministic seconds of
+    CP-SAT, which are close to wall time."""
     gap: NotNegative = 0.01
-    """Relative gap between value and bound at which the search ends."""
+    """The search ends when the relative gap between the best value found and the bound is at most
+    this."""
     leave_s: NotNegative = 20.0
-    """Cost of postponing a bundle, in seconds of a robot, in addition to the robot time that would
-    be saved by storing it."""
+    """Cost of postponing a bundle, in seconds of robot time. The robot time that storing the bundle
+    would save is lost in addition."""
     bundles: Count = 60
-    """Maximum number of bundles considered, the oldest first."""
+    """Maximum number of bundles that are considered, the oldest first."""
     pods_per_bundle: Count = 8
-    """Maximum number of pods considered for each bundle, the best first."""
+    """Maximum number of pods that are considered for each bundle, the best first."""
     stations_per_pod: Count = 2
-    """Maximum number of stations considered for each pod, the nearest first."""
+    """Maximum number of stations that are considered for each pod, the nearest first."""
 
 
 class StockingControl(ReplenishmentPodSelection[StockingParameters]):
     """Decides jointly in which pods bundles are stored, and at which replenishment stations.
 
-    The ROA controller must be `dummy`. The value of a bundle in a pod is the robot time that its
-    units will save by raising the pile-on. This value is high if the bundle's SKU is in demand and
-    the pod holds few units of it, and higher if SKUs of the pod are often ordered together with the
-    bundle's SKU. The value is weighed against the pod's trip to a station with room for the bundle;
-    the trip counts once for all bundles of the pod, and is free if the pod is brought to that
-    station anyway. When bundles wait and a station has room, the optimiser is asked, at most once
-    in `buffer_s` seconds. If it fails, the greedy rule decides.
+    The ROA controller must be `dummy`. The value of storing a bundle in a pod is the robot time
+    that the bundle's units will save by raising the pile-on. This value is high if the bundle's SKU
+    is in demand and the pod holds few units of this SKU. It is higher if other SKUs of the pod are
+    often ordered together with the bundle's SKU. The robot time of the pod's trip to a station with
+    room for the bundle is deducted from the value. The trip counts once for all bundles of the pod,
+    and is free if the pod is brought to that station anyway. When bundles wait and a station has
+    room, the optimiser is asked, at most once in `buffer_s` seconds. If it fails, the greedy rule
+    decides.
     """
 
     parameters_model = StockingParameters

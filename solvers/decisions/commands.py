@@ -16,24 +16,27 @@ if TYPE_CHECKING:
     from rmfs.solvers.decisions.files import Decision, Found
 
 app = typer.Typer(
-    help="Solve, check, bound, convert and time decision questions.",
+    help="Solve, check, bound and convert saved questions to optimisers, and compare methods.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 Files = Annotated[
     list[Path],
-    typer.Argument(metavar="FILE...", help="Decision files (rmfs-decision/1), or folders of them."),
+    typer.Argument(
+        metavar="FILE...", help="Question files (rmfs-decision/1), or folders of such files."
+    ),
 ]
-WORK = "Limit of work: deterministic seconds; nodes of HiGHS; steps of a local search."
+WORK = "Limit of work: deterministic seconds, nodes (HiGHS) or steps (local and beam search)."
 Seed = Annotated[
     int | None, typer.Option(min=0, help="Seed of the method. [default: 0]", show_default=False)
 ]
 Method = Annotated[
     str,
     typer.Option(
-        help="Method: one of the family, or `asked`: as in the run. [default: as in the run, "
-        "if a controller asked and no limit or seed is given]",
+        help="Name of a method of the family, or `asked` for the method, limits and seed used in "
+        "the run. [default: asked, if a controller asked the question and neither --work nor "
+        "--seed is given; otherwise the default method of the family]",
         show_default=False,
     ),
 ]
@@ -50,14 +53,14 @@ def solve(
         typer.Option(
             "--with",
             metavar="SOLVER",
-            help="External solver instead: highs, scip, gurobi, cplex or cbc, given the exact "
-            "program as MPS; or a command with {program}, {solution} and {seconds}. "
-            "[default: our own methods]",
+            help="Use an external solver, which gets the exact program as an MPS file: highs, "
+            "scip, gurobi, cplex, cbc, or a command that contains {program}, {solution} and "
+            "{seconds}. [default: the methods of rmfs]",
             show_default=False,
         ),
     ] = "",
     limit: Annotated[
-        float, typer.Option(min=0.1, help="With --with: time limit in seconds.")
+        float, typer.Option(min=0.1, help="With --with: time limit per question, in seconds.")
     ] = 60.0,
     out: Annotated[
         Path,
@@ -87,12 +90,12 @@ def solve(
 
 @app.command()
 def check(
-    file: Annotated[Path, typer.Argument(metavar="QUESTION", help="Decision file.")],
+    file: Annotated[Path, typer.Argument(metavar="QUESTION", help="Question file.")],
     solution: Annotated[
         Path, typer.Argument(metavar="SOLUTION", help="Solution file, from any source.")
     ],
 ) -> None:
-    """Verify a solution by an independent check, and compute its value; exit code 2 if wrong."""
+    """Check a solution independently and compute its value; the exit code is 2 if it is wrong."""
     from rmfs.solvers.decisions.checking import WrongError
     from rmfs.solvers.decisions.checking import check as checked
     from rmfs.solvers.decisions.files import read_solution
@@ -112,7 +115,7 @@ def bound(
 ) -> None:
     """Prove bounds on objectives by Lagrangian relaxation, linear relaxation and exact search.
 
-    The last line about each question states its best bound.
+    The last line printed for each question states the best of its bounds.
     """
     from rmfs.solvers.decisions.bounding import bounds
 
@@ -134,14 +137,14 @@ def convert(
     solution: Annotated[
         Path | None,
         typer.Option(
-            help="Reverse direction: a solver's solution file of the only question given, to "
-            "be converted to our format.",
+            help="Solution file of a solver, to be converted to a solution file of rmfs instead; "
+            "exactly one question must be given.",
             show_default=False,
         ),
     ] = None,
     out: Annotated[Path, typer.Option(help="Folder for the files.")] = Path("results/exact"),
 ) -> None:
-    """Write exact programs with maps of their columns, or convert the solution file of a solver."""
+    """Write exact programs with maps of their columns, or convert a solver's solution file."""
     from rmfs.solvers.decisions.exact import exact
     from rmfs.solvers.decisions.exact.reading import answer_of
     from rmfs.solvers.decisions.exact.writing import write_map, write_program
@@ -174,13 +177,21 @@ def profile(
         list[str] | None,
         typer.Option(help="Method; may be repeated. [default: all methods of the family]"),
     ] = None,
-    work: Annotated[float, typer.Option(min=0.001, help=f"Largest limit. {WORK}")] = 1.0,
+    work: Annotated[
+        float,
+        typer.Option(
+            min=0.001,
+            help="Largest limit of work, in the unit of the method (see `solve --help`).",
+        ),
+    ] = 1.0,
     seeds: Annotated[
-        int, typer.Option(min=1, help="Number of seeds per method, counted from seed 0.")
+        int, typer.Option(min=1, help="Number of seeds per method; the first seed is 0.")
     ] = 1,
-    out: Annotated[Path, typer.Option(help="Table (CSV).")] = Path("results/profile.csv"),
+    out: Annotated[Path, typer.Option(help="File for the table (.csv).")] = Path(
+        "results/profile.csv"
+    ),
 ) -> None:
-    """Run methods with repeatedly doubled limits of work, and write values, gaps and times."""
+    """Run methods with repeatedly doubled limits of work; write values, gaps and times."""
     import pandas as pd
 
     from rmfs.files import write_text
@@ -238,8 +249,12 @@ def _line(decision: Decision, found: Found) -> str:
 LIBRARY = Path("instances/decisions")
 
 LibraryFolder = Annotated[Path, typer.Option("--library", help="Folder of the library.")]
-Family = Annotated[list[str] | None, typer.Option(help="Only this family; may be repeated.")]
-Size = Annotated[list[str] | None, typer.Option(help="Only this size; may be repeated.")]
+Family = Annotated[
+    list[str] | None, typer.Option(help="Family of questions; may be repeated. [default: all]")
+]
+Size = Annotated[
+    list[str] | None, typer.Option(help="Size of the site; may be repeated. [default: all]")
+]
 
 
 @app.command()
@@ -264,13 +279,17 @@ def draw(
 def import_(
     file: Annotated[
         Path,
-        typer.Argument(metavar="FILE", help="Racks and orders in the format of Valle and Beasley."),
+        typer.Argument(
+            metavar="FILE", help="File with racks and orders, in the format of Valle and Beasley."
+        ),
     ],
-    pickers: Annotated[int, typer.Option(min=1, max=1000, help="Pick stations.")],
-    orders_each: Annotated[int, typer.Option(min=1, max=1000, help="Orders per picker.")],
+    pickers: Annotated[int, typer.Option(min=1, max=1000, help="Number of pick stations.")],
+    orders_each: Annotated[
+        int, typer.Option(min=1, max=1000, help="Number of orders per pick station.")
+    ],
     out: Annotated[Path, typer.Option(help="Folder for the question.")] = Path("questions"),
 ) -> None:
-    """Convert an instance from the literature to a question of rack allocation."""
+    """Convert an instance from the literature to a question of the family rack_allocation."""
     from rmfs.solvers.decisions.files import write
     from rmfs.solvers.decisions.racks import read_racks
 
@@ -288,17 +307,22 @@ def improve(
         float, typer.Option(min=0.01, help="Deterministic seconds per search in the first round.")
     ] = 1.0,
     rounds: Annotated[
-        int, typer.Option(min=1, help="Rounds, each with four times the work of the one before.")
+        int,
+        typer.Option(
+            min=1, help="Number of rounds; each does four times the work of the previous round."
+        ),
     ] = 1,
-    seconds: Annotated[float, typer.Option(min=1.0, help="Total wall time.")] = math.inf,
+    seconds: Annotated[
+        float, typer.Option(min=1.0, help="Total wall time, in seconds.")
+    ] = math.inf,
     load: Annotated[
-        float, typer.Option(min=0.0, help="Machine load above which the search pauses.")
+        float, typer.Option(min=0.0, help="Load of the machine above which the search pauses.")
     ] = math.inf,
     guard: Annotated[
-        float, typer.Option(min=1.0, help="Wall time after which a search is given up.")
+        float, typer.Option(min=1.0, help="Wall time, in seconds, after which a search is aborted.")
     ] = 120.0,
 ) -> None:
-    """Search for better values and bounds of the questions in the library, within a given time."""
+    """Search for better solutions and bounds for the questions in the library."""
     import os
 
     from rmfs.solvers.decisions.library.improving import Effort
@@ -319,7 +343,7 @@ def enter(
     solutions: Annotated[
         list[Path], typer.Argument(metavar="SOLUTION...", help="Solution files, from any source.")
     ],
-    by: Annotated[str, typer.Option(help="Who found them, and how.")],
+    by: Annotated[str, typer.Option(help="Who found the solutions, and how.")],
     library: LibraryFolder = LIBRARY,
 ) -> None:
     """Add solutions to the library if they are feasible and better than the known ones."""

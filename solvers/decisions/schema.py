@@ -111,11 +111,11 @@ def _robots(data: Plain) -> int:
 
 _WEIGHTS = """
 weights.travel     | real |     | cost per unit of `travel` and `fetch`
-weights.visit      | real |     | further cost per called pod
+weights.visit      | real |     | cost per called pod, in addition to the travel
 weights.empty_slot | real |     | cost per slot that stays empty
 weights.complete   | real |     | reward per order covered in full
 weights.unit       | real |     | reward per unit of an order covered in full
-weights.prospects  | flag |     | whether prospects earn `complete` and `unit`, too
+weights.prospects  | flag |     | whether prospects also earn `complete` and `unit`
 weights.open_unit  | real |     | cost per open unit
 weights.open_line  | real |     | cost per open line (variant `later`)
 weights.line       | real |     | reward per line covered
@@ -137,7 +137,7 @@ travel       | real  | P S | cost of bringing a pod to a station
 available    | flag  | P   | whether a pod may be called
 inbound      | whole | P   | station that a pod is on its way to, or -1
 open_units   | whole | S K | units that open orders of a station need and have not reserved, per SKU
-fetch?       | real  | R P | cost for a robot to reach a pod; without it, robots are not decided
+fetch?       | real  | R P | cost for a robot to reach a pod; if absent, no robots are assigned
 robot_pod?   | whole | R   | pod that a robot is bound to, or -1
 worth?       | real  | O   | extra reward for giving an order its first slot
 may_call?    | flag  | S   | whether pods may be called to a station
@@ -151,7 +151,7 @@ slot         | flag  | O S | whether an order takes a slot at a station
 line_station | whole | L   | station whose pods cover a line now, or -1
 pod_station  | whole | P   | station that a pod is called to, or -1
 pod_robot    | whole | P   | robot that fetches a pod, or -1
-prospect     | whole | O   | station whose pods could serve a prospect, or -1
+prospect     | whole | O   | station whose pods could serve an order (a prospect), or -1
 """
         ),
         {"O": _orders, "R": _robots},
@@ -160,10 +160,10 @@ prospect     | whole | O   | station whose pods could serve a prospect, or -1
         fields_of(
             """
 slots         | whole | S   | order slots, 1 or more
-coming        | whole | F   | pods under way; those of a station in order of arrival
+coming        | whole | F   | pods under way; pods to the same station in order of arrival
 coming_to     | whole | F   | station of each pod under way
-order_station | whole | O   | station at which an order is open, or -1 if it waits
-order_until   | whole | O   | last visit under way with units for an open order (position), or -1
+order_station | whole | O   | station at which an order is open, or -1 if the order waits
+order_until   | whole | O   | position of the last visit under way with units for an order, or -1
 order_worth   | real  | O   | value of completing an order, s of robot time
 line_order    | whole | L   | order of each line
 line_sku      | whole | L   | SKU of each line
@@ -178,8 +178,8 @@ decay         | real  |     | discount factor from one visit to the next, in (0,
         fields_of(
             """
 pods          | lists | S   | pods of the new visits of each station, in order
-order_station | whole | O   | station of each order, or -1 if it keeps waiting
-line_visit    | whole | L   | visit that serves a line, pods under way counted first, or -1
+order_station | whole | O   | station of each order, or -1 if the order keeps waiting
+line_visit    | whole | L   | position of the visit that serves a line, or -1
 """
         ),
         {},
@@ -196,7 +196,7 @@ opened   | flag  | O   | whether an order is open before the first visit
         fields_of(
             """
 pods  | whole | T | pods of the visits, in order
-start | whole | O | visit in which an order is opened; -1 if it was open before
+start | whole | O | visit in which an order is opened, or -1 if it was open before
 """
         ),
         {},
@@ -204,8 +204,8 @@ start | whole | O | visit in which an order is opened; -1 if it was open before
     "rack_allocation": Schema(
         fields_of(
             """
-units | whole | O K | units that an order wants of a SKU
-stock | whole | P K | units that a pod holds of a SKU
+units | whole | O K | units of a SKU that an order needs
+stock | whole | P K | units of a SKU that a pod holds
 slots | whole | S   | order slots of a station; all are filled
 """
         ),
@@ -221,7 +221,7 @@ pod_station   | whole | P | station of a pod, or -1
         fields_of(
             """
 travel_s | cost | P L | travel time of a pod to a location, s
-access_s | real | L   | travel time of a later visit, from a location to a station and back, s
+access_s | real | L   | travel time of a later visit: from a location to a station and back, s
 visits   | real | P   | expected visits of a pod to stations from its new location
 """
         ),
@@ -232,7 +232,7 @@ visits   | real | P   | expected visits of a pod to stations from its new locati
         fields_of(
             """
 begin_s  | real  | N   | when a stay begins, s
-end_s    | real  | N   | when it ends, s
+end_s    | real  | N   | when a stay ends, s
 cost_s   | cost  | N Z | robot time of a stay in a zone, s
 capacity | whole | Z   | storage locations of a zone
 """
@@ -243,17 +243,17 @@ capacity | whole | Z   | storage locations of a zone
     "zones": Schema(
         fields_of(
             """
-visit_s        | real | I J | robot time of a visit of a pod of a class stored in a zone, s
+visit_s        | real | I J | robot time of a visit by a pod of a class that is stored in a zone, s
 rate_per_h     | real | I   | visits per pod of a class, 1/h
 pods           | real | I   | number of pods of a class
 places         | real | J   | storage locations of a zone
-congestion_s_h | real | J   | delay of a visit from a zone per visit per hour from it, s h
+congestion_s_h | real | J   | delay of each visit from a zone / visits per hour from this zone, s h
 """
         ),
         fields_of(
             """
 standing    | real | I J | pods of a class in a zone
-price_per_h | real | J   | robot time that one more location would save, s/h; not checked
+price_per_h | real | J   | robot time that one more location in a zone would save, s/h; not checked
 """
         ),
         {},
@@ -264,22 +264,22 @@ price_per_h | real | J   | robot time that one more location would save, s/h; no
 level      | real  | R   | current level of a battery, as a share of its capacity
 drain      | real  | R   | consumption of a robot in a slot of work, as a share of the capacity
 ready      | whole | R   | first time slot in which a robot may leave its work
-waits      | flag  | R   | whether a robot is already on its way to a charger, and so away
+waits      | flag  | R   | whether a robot is already on its way to a charger
 here       | whole | R   | group of the charger at which a robot is now, or -1
 way_s      | cost  | R G | travel time of a robot to a charger of a group, s
 places     | whole | G T | maximum number of robots at a group in a slot
 gain       | real  | G   | share of the capacity charged per slot at constant power
-swapped    | real  | G   | level after a swap, which takes a slot; 0: the group charges instead
-wanted     | whole | Q T | robots needed for work in a slot, in each of Q equally likely cases
+swapped    | real  | G   | level after a swap; 0 if the group consists of chargers
+wanted     | whole | Q T | robots needed for work in a slot, in each of the equally likely cases
 slot_s     | real  |     | length of a time slot, s
 worth_s    | real  |     | value of a full battery at the end, s of robot time
 longest    | whole |     | maximum number of time slots of a stay
-taper_from | real  |     | level from which charging slows down; 1: never
+taper_from | real  |     | level above which charging slows down; 1 if it never does
 full       | real  |     | level that counts as full
 least      | real  |     | level below which no robot should fall
-short_s    | real  |     | cost of falling below `least`, s for a shortfall of a full battery
-idle       | real  |     | cost of time away if a robot is not needed, as a share of that if it is
-curve      | real  |     | value of energy / mean value: 1 + curve if empty, 1 - curve if full
+short_s    | real  |     | cost of a shortfall below `least`, s of robot time per full battery
+idle       | real  |     | cost of an unneeded robot's time away, as a share of a needed robot's
+curve      | real  |     | marginal / mean value of energy: 1 + curve if empty, 1 - curve if full
 """
         ),
         fields_of(
@@ -306,12 +306,12 @@ leave_s  | cost | T   | cost of leaving a task undone, s; "inf" if it must be do
             """
 arrive_s    | cost  | R T | time until a robot is at the station with the pod of a task, s
 leave_s     | cost  | T   | cost of leaving a task undone, s; "inf" if it must be done
-due_s       | cost  | T   | time until a task's pod is due at the station, s; "inf" if there is none
+due_s       | cost  | T   | time until a task's pod is due at the station, s; "inf": no due time
 station     | whole | T   | station of a task
 queue       | whole | S   | pods at a station or on their way to it
 service_s   | real  | S   | time for which a pod occupies a station, s
 room        | whole | S   | maximum number of robots that may be sent to a station now
-late_weight | real  |     | seconds of travel that a second of lateness is worth
+late_weight | real  |     | cost of a second of lateness, in seconds of travel
 """
         ),
         fields_of("robot | whole | T | robot of each task, or -1"),
@@ -320,26 +320,26 @@ late_weight | real  |     | seconds of travel that a second of lateness is worth
     "sequence": Schema(
         fields_of(
             """
-ready_s     | ms      | R   | when a robot can begin, s
+ready_s     | ms      | R   | earliest time at which a robot can begin, s
 carrying    | flag    | R   | whether a robot carries a pod
-reach_s     | cost_ms | R T | empty drive to the pod of a task, s
-stow_s      | cost_ms | R L | drive of a robot with its pod to a location, s
+reach_s     | cost_ms | R T | empty drive from a robot's position to the pod of a task, s
+stow_s      | cost_ms | R L | drive of a robot with the pod that it carries to a location, s
 fetch_s     | cost_ms | L T | empty drive from a location to the pod of a task, s
-bring_s     | ms      | T   | lift and drive to the station, s
-service_s   | ms      | T   | time at the station, s
-store_s     | cost_ms | T L | drive from the station to a location, s
-earliest_s  | ms      | T   | earliest time at the station, s
-latest_s    | cost_ms | T   | latest time at the station, s
+bring_s     | ms      | T   | lifting the pod of a task and driving to the station, s
+service_s   | ms      | T   | time for which the pod of a task stays at the station, s
+store_s     | cost_ms | T L | drive from the station of a task to a location, s
+earliest_s  | ms      | T   | earliest arrival at the station, s
+latest_s    | cost_ms | T   | latest arrival at the station, s
 due_s       | cost_ms | T   | due time of the pod at the station, s
 skip_s      | cost_ms | T   | cost of leaving a task undone, s; "inf" if it must be done
-late_weight | whole   |     | seconds of driving that a second of lateness is worth
+late_weight | whole   |     | cost of a second of lateness, in seconds of driving
 """
         ),
         fields_of(
             """
-tasks       | lists | R | tasks of a robot, in order
+tasks       | lists | R | tasks of a robot, in the order in which it does them
 place       | whole | T | location where a task's pod is stored, or -1 if the task is left undone
-robot_place | whole | R | location where the pod that a robot carries is stored first, or -1
+robot_place | whole | R | location where a robot stores the pod that it carries, or -1
 """
         ),
         {},
@@ -367,22 +367,22 @@ station | whole | P | station of a pod, or -1
         fields_of(
             """
 duration_s                 | real  |   | length of the measured time, s
-robots                     | whole |   | robots
-picking.unit_transfer_s    | real  | S | time for which a unit occupies the station, s
-picking.unit_pick_s        | real  | S | time for which a unit occupies the robot, s
-picking.changeover_s       | real  | S | least time from one robot leaving to service of the next, s
+robots                     | whole |   | number of robots
+picking.unit_transfer_s    | real  | S | time for which a unit keeps the station busy, s
+picking.unit_pick_s        | real  | S | time for which a unit keeps the robot at the station, s
+picking.changeover_s       | real  | S | least time from a robot's departure to the next service, s
 picking.inbound_s          | real  | S | shortest drive to the station, s
 picking.outbound_s         | real  | S | shortest drive from the station, s
 picking.order_slots        | whole | S | order slots
-refill.bundle_transfer_s   | real  | Q | time for which a bundle occupies station and robot, s
+refill.bundle_transfer_s   | real  | Q | time for which a bundle keeps station and robot busy, s
 refill.inbound_s           | real  | Q | shortest drive to the station, s
 refill.outbound_s          | real  | Q | shortest drive from the station, s
 refill.bundle_units        | whole |   | maximum number of units in a bundle
 refill.bundles_per_visit   | whole |   | maximum number of bundles in a visit
 stock.pod_units            | whole | P | maximum number of units in a pod at the beginning
 stock.largest_pod_units    | whole |   | maximum number of units in any pod at any time
-orders.units               | cost  |   | maximum number of units ordered
-orders.largest_order_units | cost  |   | maximum number of units in an order
+orders.units               | cost  |   | maximum number of units ordered in total
+orders.largest_order_units | cost  |   | maximum number of units in a single order
 orders.lone_units          | cost  |   | maximum units in orders that one visit serves completely
 orders.join_visits         | flag  |   | whether orders may join a visit in progress
 """

@@ -1,8 +1,9 @@
 """The table of claims: `python -m tests.tools.claims` writes docs/claims.md.
 
-What is claimed is in `claims.toml`, and no number with it: numbers, their intervals and the hashes
-of their inputs are read from the published tables and their provenance. A claim also says between
-what its interval must lie: a study that was done again and no longer shows it is noticed.
+The texts of the claims are in `claims.toml`. The numbers, their intervals and the hashes of their
+inputs are read from the published tables and their provenance. A claim may also state bounds
+between which its interval must lie, so that an error is reported if a repeated study no longer
+supports the claim.
 """
 
 from __future__ import annotations
@@ -36,23 +37,37 @@ HEAD = """\
 
 <!-- written by python -m tests.tools.claims -->
 
-This page lists the numbers that we claim and the commands that reproduce them. The *number* is the
-mean over seeds, with the half width of its 95 % confidence interval if there is one; it is read
-from the *file*, a table in `results/published`. If a claim compares one thing *against* another,
-the number is the first minus the second, or, with the unit %, this difference in percent of the
-second. The *input hash* identifies the design: its arms, its seeds and the content of all inputs.
-The provenance file beside the table contains the full hash, the runs and the version of the code.
+This page lists the numbers that we claim and the commands that reproduce them. Each *number* is
+read from the *file* in the last column, a table in `results/published`. Unless the claim states
+otherwise, it is a mean over seeds. The half width of its 95 % confidence interval follows if the
+table contains one. If a claim compares one thing *against* another, the number is the value of the
+first minus that of the second or, if the unit is %, this difference in percent of the second. The
+*input hash* identifies the design: its arms, its seeds and the content of all inputs. The
+provenance file beside the table contains the full hash, the runs and the version of the code.
 
-Figures 5a and 5b and section 4 are those of Merschformann, Xie, Li (2018). If a file name contains
-`-reference`, the layout is RAWSim-O's own, and `DIR` is a folder with the files of RAWSim-O
-([papers](papers.md)). In RAWSim-O, a robot waits for the next time step of the simulation before
-every move, lift and set-down. With *RAWSim-O's planner and time steps*, paths are planned by FAR
-(flow annotation replanning), and the mean of this wait is added to the times of turning and
-lifting. SEQU and M1G are the sequential rules and the joint model of Jiao et al. (2025); *planning
-by search* plans several visits of each station ahead ([joint optimisation](joint-optimisation.md)).
-*What the stations can do* is the number of units that the pick stations could pick if they never
-waited. *Targets* are our own. The [glossary](glossary.md) explains the other terms; *small*,
-*default* and *large site* are the shipped layouts of these names.
+Figures 5a and 5b and section 4 are those of Merschformann, Xie, Li (2018), the paper on the
+simulator RAWSim-O. Section 4 of the paper describes the [demonstrator](demonstrator.md). For figure
+5a, the *difference in differences* is the change from the first to the second half of the day in
+runs with the switch, minus the change in runs without it. If a file name contains `-reference`, the
+layout is RAWSim-O's own, and `DIR` is a folder with the files of RAWSim-O ([papers](papers.md)). In
+RAWSim-O, a robot waits for the next time step of the simulation before every straight drive, lift
+and set-down. With *RAWSim-O's planner and time steps*, paths are planned by FAR (flow annotation
+replanning), and the mean of this wait is added to the times of turning, lifting and setting down.
+
+- *Sites*: the *small*, *default* and *large site* are the shipped layouts of these names.
+- *Demand*: with a *backlog*, a constant number of orders waits; with *arrivals*, orders arrive over
+  time. *Third hour* means that the first two hours of the run are its warm-up.
+- *Controllers*: SEQU and M1G are the sequential rules and the joint model of Jiao et al. (2025).
+  *Split orders decided jointly with pods* refers to the controllers `pile-on-split`, and *split
+  orders, pods and robots decided by models* to `pile-on-dispatch`. *Planning by search* plans
+  several visits of pods to each station ahead ([joint optimisation](joint-optimisation.md)). PPO is
+  proximal policy optimisation, a method of reinforcement learning ([learning](learning.md)).
+- *Measures*: the *station share* is the number of units picked, as a share of the number that the
+  pick stations could pick if they never waited. *Metres per unit* is the distance driven per unit
+  picked. *Late orders* are completed late or overdue at the end of the run.
+- *Targets* were set by ourselves.
+
+The [glossary](glossary.md) explains the other terms.
 
 | claim | number | command | input hash | file |
 |---|---|---|---|---|
@@ -60,14 +75,14 @@ waited. *Targets* are our own. The [glossary](glossary.md) explains the other te
 
 
 class ClaimEntry(Model):
-    """One claim as it is written down."""
+    """One claim, as given in claims.toml."""
 
-    text: str = Field(description="one sentence; what the number is, with its unit")
+    text: str = Field(description="what the number is, with its unit, in one sentence")
     file: str = Field(description="a .csv table in results/published")
-    row: str = Field(description="what stands in the first columns, with a comma between them")
-    keys: int = Field(1, ge=1, description="how many columns those are")
+    row: str = Field(description="the values in the first columns, separated by `, `")
+    keys: int = Field(1, ge=1, description="number of these first columns")
     column: str = Field(description="name of the column, without its ending `mean`")
-    command: str = Field(description="what publishes the file")
+    command: str = Field(description="command that publishes the file")
     above: float | None = Field(None, description="the whole interval must lie above this")
     below: float | None = Field(None, description="the whole interval must lie below this")
 
@@ -81,14 +96,14 @@ class ClaimFile(Model):
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim and what has been published for it.
+    """A claim, with its number and the input hash from the published table.
 
     Attributes
     ----------
     value, half_width
         The number and the half width of its interval; NaN if there is none.
     input_hash
-        Of the design that the numbers come from.
+        Hash of the design from which the number was computed.
     """
 
     entry: ClaimEntry
@@ -98,7 +113,7 @@ class Claim:
 
     @property
     def holds(self) -> bool:
-        """Whether the interval lies where the claim says."""
+        """Whether the interval lies between the bounds of the claim."""
         half = 0.0 if math.isnan(self.half_width) else self.half_width
         low, high = self.value - half, self.value + half
         above = -math.inf if self.entry.above is None else self.entry.above
@@ -107,7 +122,7 @@ class Claim:
 
     @property
     def number(self) -> str:
-        """The number as it is shown: as many digits as the interval is worth."""
+        """The number as text, rounded according to the width of its interval."""
         shown = digits(pd.Series([self.half_width]), pd.Series([self.value]))
         number = f"{self.value:,.{shown}f}"
         return number if math.isnan(self.half_width) else f"{number} ± {self.half_width:,.{shown}f}"
@@ -121,14 +136,14 @@ class Claim:
 
 
 def claims(published: Path, source: Path = SOURCE) -> list[Claim]:
-    """Return all claims with the numbers that are published.
+    """Return all claims with their published numbers.
 
     Parameters
     ----------
     published
         The folder of published tables.
     source
-        What is claimed. Default: the project's own.
+        The file of claims. Default: that of the project.
 
     Raises
     ------
@@ -177,7 +192,7 @@ def page(found: Sequence[Claim]) -> str:
     Raises
     ------
     InputError
-        If a claim does not hold: it is not to be published.
+        If the published number of a claim violates its bounds.
     """
     broken = [claim for claim in found if not claim.holds]
     if broken:

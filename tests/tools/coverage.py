@@ -200,29 +200,33 @@ PAGE = """\
 <!-- written by python -m tests.tools.coverage --page docs/coverage.md -->
 
 This page tests the statistics of rmfs on a synthetic simulator whose true means are known. The
-result of a run is the mean of its arm, plus an effect of the seed that all arms share (common
-random numbers), plus independent noise. The standard deviation of effect and noise together is 5 %
-of the mean. In the rows *normal*, both are normally distributed; in the rows *skewed*, both are
-exponential. Each figure comes from {experiments:,} experiments.
+result of a run is the mean of its arm, plus an effect of the seed, plus independent noise. The
+effect of a seed is the same for all arms (common random numbers). The standard deviation of the sum
+of effect and noise is 5 % of the mean. In the rows *normal* of the table below, both are normally
+distributed; in the rows *skewed*, both have exponential distributions, shifted to mean 0. Each
+figure comes from {experiments:,} experiments.
 
-- **t**, **bootstrap**: how often a 95 % interval of a fixed number of seeds covers the true mean.
-- **sequential**: how often an interval covers the true mean if seeds are added to the number in the
-  column *seeds* until the half width of the interval is below 2 % of the mean. The next column is
-  the mean number of seeds that were needed.
-- **false alarms**: how often at least one arm is found to differ from the baseline at the 5 %
-  level although all arms have the same mean (paired t tests, for five arms with Holm's correction).
+- **t**, **bootstrap**: share of the 95 % intervals that cover the true mean if the number of seeds
+  is fixed.
+- **sequential**: share of the 95 % intervals that cover the true mean if the number of seeds is not
+  fixed. An experiment starts with the number in the column *seeds*; seeds are added until the half
+  width of the interval is at most 0.02 / 1.02 of the mean, which limits the relative error to 2 %.
+  The next column is the mean number of seeds that were needed.
+- **false alarms**: share of the experiments in which an arm is found to differ from the baseline at
+  the 5 % level although all arms have the same mean. One arm or five arms are compared with the
+  baseline by paired t tests; with five arms, Holm's correction is applied.
 
 {table}
 
 With few seeds, bootstrap intervals (BCa) are too narrow, for normal and for skewed runs alike. Use
-them only with at least 30 seeds. A sequential procedure stops when the sample happens to vary
-little, so its interval covers the true mean slightly less often than stated; begin with ten seeds
-rather than five.
+them only with at least 30 seeds. A sequential procedure tends to stop when the sample happens to
+vary little. Its interval therefore covers the true mean slightly less often than stated; begin with
+ten seeds rather than five.
 
-The selection of the best of five arms (procedure KN) was tested in its hardest case, in which the
-best arm is better by exactly the smallest difference worth detecting. The selection was
-correct in {right:.3f} of the experiments (nominal: 0.95). On average, it took {taken:.0f} runs of
-all five arms together.
+The selection of the best of five arms (procedure KN of Kim and Nelson) was tested in its hardest
+case: the best arm is better than each of the others by exactly the smallest difference worth
+detecting. The selection was correct in {right:.3f} of the experiments (nominal: 0.95). On average,
+it took {taken:.0f} runs in total, with all five arms counted.
 """
 
 

@@ -23,14 +23,14 @@ class BreaksParameters(LevelParameters):
     """Parameters of CA breaks."""
 
     below_share: Share = 0.25
-    """Outside breaks, a robot charges if its level is below this share of the capacity."""
+    """Outside breaks, a robot charges if its battery level is below this share of the capacity."""
     until_share: Level = 0.9
-    """Level (share of capacity) up to which robots charge."""
+    """Battery level (share of the capacity) up to which robots charge."""
     breaks_s: tuple[Break, ...] = ((14400.0, 16200.0), (28800.0, 30600.0))
-    """Breaks as pairs of start and end, in seconds since the start of a cycle, in order of time."""
+    """Breaks in order of time: pairs of start and end, in seconds since the start of a cycle."""
     cycle_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 43200.0
-    """Length of a cycle in seconds, after which the breaks repeat; the first cycle begins at
-    midnight of the scenario's clock."""
+    """Length of a cycle in seconds, after which the breaks repeat. The first cycle begins at
+    midnight (time of day 0)."""
 
     @pydantic.model_validator(mode="after")
     def _breaks_in_order(self) -> BreaksParameters:

@@ -21,16 +21,17 @@ class ByDemandParameters(LevelParameters):
     """Parameters of CA by-demand."""
 
     below_share: Share = 0.25
-    """Level (share of capacity) below which a robot charges while many orders arrive."""
+    """Battery level (share of the capacity) below which a robot charges while many orders
+    arrive."""
     calm_below_share: Share = 0.6
-    """Level (share of capacity) below which a robot charges while few orders arrive."""
+    """Battery level (share of the capacity) below which a robot charges while few orders arrive."""
     until_share: Level = 0.8
-    """Level (share of capacity) up to which a robot charges."""
+    """Battery level (share of the capacity) up to which a robot charges."""
     window_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 900.0
-    """Length in seconds of the window in which arrivals are counted."""
+    """Length, in seconds, of the most recent period in which arriving orders are counted."""
     calm_share: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.8
-    """Arrivals count as few if their rate in the window is below this share of the mean rate since
-    the rule was installed."""
+    """Few orders are considered to arrive if their rate in the most recent period (`window_s`) is
+    below this share of the mean rate since the rule was installed."""
 
     @pydantic.model_validator(mode="after")
     def _calm_in_order(self) -> ByDemandParameters:
@@ -43,7 +44,7 @@ class ByDemandParameters(LevelParameters):
 
 
 class ByDemand(ByLevel[ByDemandParameters]):
-    """Sends robots to charge; while few orders arrive, at a higher battery level than otherwise.
+    """Lets robots charge earlier, that is, at a higher battery level, while few orders arrive.
 
     As a result, fewer robots need to charge while many orders arrive.
     """

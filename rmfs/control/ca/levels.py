@@ -26,20 +26,21 @@ class PlaceParameters(Parameters):
     """Parameters of all rules that send robots to charging places."""
 
     place: PlaceRule = "least-queued"
-    """Choice of the charging place: `least-queued` (fewest robots there or on their way),
-    `nearest`, or `soonest` (least total charging time of these robots)."""
+    """Choice of the charging place: `least-queued` (fewest robots at the place or on their way
+    there), `nearest`, or `soonest` (least total charging time of the robots at the place or on
+    their way there)."""
     hand_over_share: Level | None = None
-    """A charging robot gives up its place if its level exceeds that of a waiting robot by more than
-    this share of the capacity and suffices for any task. Default: never."""
+    """A charging robot gives up its place if its level exceeds that of a robot waiting for the
+    place by more than this share of the capacity and suffices for any task. Default: never."""
 
 
 class LevelParameters(PlaceParameters):
     """Parameters of rules with a level at which charging starts and another at which it ends."""
 
     below_share: Share = 0.3
-    """A robot charges when its level falls below this share of the capacity."""
+    """A robot charges when its battery level falls below this share of the capacity."""
     until_share: Level = 0.8
-    """Level (share of capacity) up to which a robot charges."""
+    """Battery level (share of the capacity) up to which a robot charges."""
 
     @pydantic.model_validator(mode="after")
     def _in_order(self) -> LevelParameters:

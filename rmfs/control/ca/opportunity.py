@@ -22,17 +22,19 @@ class OpportunityParameters(LevelParameters):
     """Parameters of CA opportunity."""
 
     below_share: Share = 0.25
-    """A robot charges if its level is below this share of the capacity, even if there is work."""
+    """A robot charges if its battery level is below this share of the capacity, even if there is
+    work."""
     until_share: Level = 0.8
-    """Level (share of capacity) at which a charging robot leaves its place at the latest."""
+    """Battery level (share of the capacity) at which a charging robot leaves its place at the
+    latest."""
     idle_below_share: Share = 0.75
-    """A robot at rest charges if a place is free and its level is below this share of the
-    capacity."""
+    """A robot at rest charges if a charging place is free and the robot's battery level is below
+    this share of the capacity."""
     leave_above_share: Share = 0.4
     """While work waits and no robot is at rest, charging robots are called back, one at a time, if
-    their level is above this share of the capacity and suffices for any task."""
+    their battery level is above this share of the capacity and suffices for any task."""
     period_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 30.0
-    """Seconds between checks of robots at rest."""
+    """Time, in seconds, between checks whether robots at rest should charge."""
 
 
 class Opportunity(ByLevel[OpportunityParameters]):

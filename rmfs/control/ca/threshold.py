@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Threshold(ByLevel[LevelParameters]):
-    """Makes a robot charge when its battery level is below `below_share`, up to `until_share`.
+    """Sends a robot whose battery level is below `below_share` to charge up to `until_share`.
 
     These two thresholds are called `threshold_soc` and `recharge_soc` in Open-RMF, and replenish
     and release points in DELMIA.
@@ -33,11 +33,11 @@ class ToFullParameters(PlaceParameters):
     """Parameters of the CA rule `to-full`."""
 
     below_share: Share = 0.3
-    """A robot charges when its level falls below this share of the capacity."""
+    """A robot charges when its battery level falls below this share of the capacity."""
 
 
 class ToFull(ByLevel[ToFullParameters]):
-    """Sends a robot to charge fully when its battery level is below a threshold."""
+    """Sends a robot whose battery level is below `below_share` to charge fully."""
 
     parameters_model = ToFullParameters
 

@@ -27,7 +27,7 @@ class RandomParameters(Parameters):
     """Parameters of MM random."""
 
     period_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 7200.0
-    """Seconds between exchanges."""
+    """Length of a period in seconds; at its end, an alternative is installed."""
     alternatives: Annotated[tuple[Rules, ...], pydantic.Field(min_length=1)] = (
         Rules(psa={"name": "nearest"}),
         Rules(psa={"name": "random"}),
@@ -39,7 +39,7 @@ class RandomParameters(Parameters):
 
 
 class RandomExchange(MethodManagement[RandomParameters]):
-    """Installs one of the `alternatives`, all equally likely, at the end of each period.
+    """At the end of each period, installs one of the `alternatives`, all with equal probability.
 
     If the drawn alternative is already installed, its rules start anew.
     """

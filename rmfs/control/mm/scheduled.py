@@ -50,9 +50,9 @@ class ScheduledParameters(Parameters):
     """Parameters of MM scheduled."""
 
     exchanges: Annotated[tuple[PlannedExchange, ...], pydantic.Field(min_length=1)]
-    """The exchanges in order of time: each has `at_s` (s) or `at_share` (of warm-up and duration
-    together) and a table for each rule to install, for example
-    `{ at_share = 0.5, psa = { name = "nearest" } }`."""
+    """The exchanges in order of time, for example `{ at_share = 0.5, psa = { name = "nearest" } }`.
+    Each has a table for each rule to install, and a time: either `at_s` (in s of simulated time) or
+    `at_share` (a share of the whole run, warm-up included)."""
 
 
 class Scheduled(MethodManagement[ScheduledParameters]):

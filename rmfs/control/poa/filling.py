@@ -27,12 +27,12 @@ class FastLaneParameters(Parameters):
     """Parameters of POA rules with a fast lane."""
 
     fast_lane: bool = False
-    """Whether orders that the pod at the head of a station's queue can complete are assigned to
-    this station first (fast lane). Stations with several slots reserve one of them for such
-    orders."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to the
+    station before other orders (fast lane). Stations with several slots reserve one of them for
+    such orders."""
     fast_lane_tie_breaker: TieBreaker = "due-time"
-    """Which order takes the fast lane if there are several: the one due first (`due-time`), the one
-    that arrived first (`first-come`), or a random one (`random`)."""
+    """Which of several orders suitable for the fast lane comes first: the one due first
+    (`due-time`), the one that arrived first (`first-come`), or a random one (`random`)."""
 
 
 P = TypeVar("P", bound=Parameters)

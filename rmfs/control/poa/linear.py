@@ -22,9 +22,9 @@ class LinearParameters(FastLaneParameters):
     """Parameters of POA linear."""
 
     fast_lane: bool = True
-    """Whether orders that the pod at the head of a station's queue can complete are assigned to
-    this station first (fast lane). Stations with several slots reserve one of them for such
-    orders."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to the
+    station before other orders (fast lane). Stations with several slots reserve one of them for
+    such orders."""
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("poa"))
     """Weights of the scaled features of a pair of order and station (see the page on learning)."""
 

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 class LinesInCommon(BestPair[PairParameters]):
     """Groups orders for the same SKUs at the same station.
 
-    Each line of an order adds to the order's score at a station the number of orders there that
-    have a line for the same SKU, picked or not. The pair of order and station with the highest
-    score is assigned; this is repeated until no order can be assigned. Ties are broken by
-    `tie_breaker`; remaining ties go to the order that arrived first, then to the station with the
-    lowest number.
+    The score of a pair of order and station is a sum over the lines of the order: for each line,
+    the number of orders at the station that have a line for the same SKU, picked or not. The pair
+    with the highest score is assigned; this is repeated until no order can be assigned. Ties are
+    broken by `tie_breaker`; remaining ties go to the order that arrived first, then to the station
+    with the lowest number.
     """
 
     parameters_model = PairParameters

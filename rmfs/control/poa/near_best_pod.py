@@ -22,9 +22,9 @@ class NearBestPodParameters(Parameters):
     """Parameters of POA near-best-pod."""
 
     metric: Metric = "path"
-    """Measure of the distance from pod to station: `euclidean` or `manhattan` (in m), `path` (in m
-    along the shortest path of a loaded robot) or `time` (in s, of a loaded robot that no other
-    robot delays)."""
+    """Measure of the distance from pod to station: `euclidean` or `manhattan` (in m), `path`
+    (length in m of a loaded robot's shortest path) or `time` (travel time in s of a loaded robot if
+    no other robot delays it)."""
 
 
 class NearBestPod(Filling[NearBestPodParameters]):

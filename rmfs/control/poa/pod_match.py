@@ -20,9 +20,9 @@ class PodMatchParameters(PairParameters):
     late_first: bool = False
     """Whether orders that are past their due time come before all others."""
     fast_lane: bool = True
-    """Whether orders that the pod at the head of a station's queue can complete are assigned to
-    this station first (fast lane). Stations with several slots reserve one of them for such
-    orders."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to the
+    station before other orders (fast lane). Stations with several slots reserve one of them for
+    such orders."""
 
 
 class PodMatch(BestPair[PodMatchParameters]):

@@ -49,12 +49,12 @@ class QueueParameters(Parameters):
     """Criteria, in order of priority, for choosing which order of a station's pool gets a slot
     next."""
     fast_lane: bool = True
-    """Whether orders that the pod at the head of a station's queue can complete are assigned to
-    this station first (fast lane). Stations with several slots reserve one of them for such
-    orders."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to the
+    station before other orders (fast lane). Stations with several slots reserve one of them for
+    such orders."""
     fast_lane_criteria: Criteria = (Size(), DueTime(), FirstCome())
-    """Criteria, in order of priority, for choosing which order takes the fast lane if there are
-    several."""
+    """Criteria, in order of priority, for choosing among several orders suitable for the fast
+    lane."""
 
 
 class Queue(PickOrderAssignment[QueueParameters]):

@@ -23,12 +23,12 @@ class WaveParameters(PairParameters):
     """Length of a wave in seconds: the wave consists of the orders that are due at most this long
     after the first of them. With 0, all orders of a wave are due at the same time."""
     missed_last: bool = False
-    """Whether orders that are past their due time, because their truck has left, come last. If
-    false, they belong to the first wave."""
+    """Whether orders that are past their due time come last, since their truck has left. If false,
+    they belong to the first wave."""
     fast_lane: bool = True
-    """Whether orders that the pod at the head of a station's queue can complete are assigned to
-    this station first (fast lane). Stations with several slots reserve one of them for such
-    orders."""
+    """Whether orders that the pod at the head of a station's queue can complete are assigned to the
+    station before other orders (fast lane). Stations with several slots reserve one of them for
+    such orders."""
 
 
 class Wave(BestPair[WaveParameters]):

@@ -44,10 +44,11 @@ class RollingParameters(Parameters):
     period_s: float = pydantic.Field(1.0, gt=0)
     """Minimum simulated time, in seconds, between two calls of the planner."""
     runs_granted: int = pydantic.Field(4, ge=1)
-    """Maximum number of straight runs of its plan that are granted to a robot at a time."""
+    """Maximum number of straight runs of a robot's planned path that are reserved for the robot at
+    a time."""
     patience_s: float = pydantic.Field(30.0, ge=0)
-    """Time, in seconds, for which a robot stands still before it moves to a random free waypoint
-    next to it."""
+    """Time, in seconds, for which a robot must stand still before it moves to a random free
+    waypoint next to it, to resolve a deadlock."""
 
 
 class PathPlanningInPython(PathPlanning[P]):

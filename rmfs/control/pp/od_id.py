@@ -13,19 +13,24 @@ class OdIdParameters(RollingParameters):
     window_s: float = pydantic.Field(15.0, gt=0)
     """Horizon, in seconds, within which robots avoid each other."""
     wait_s: float = pydantic.Field(2.0, gt=0)
-    """Duration, in seconds, of a single wait."""
+    """Duration, in seconds, of one planned wait."""
     nodes_per_robot: int = pydantic.Field(100, ge=1)
-    """Maximum number of joint states expanded when a group is planned, per robot of the group."""
+    """Maximum number of joint states that are expanded when a group is planned, per robot of the
+    group."""
     nodes: int = pydantic.Field(600, ge=1)
-    """Maximum number of joint states expanded per call, over all groups."""
+    """Maximum number of joint states that are expanded per call, over all groups."""
     choices: int = pydantic.Field(4, ge=1)
-    """Maximum number of straight runs considered per robot in joint planning, the best first."""
+    """Maximum number of straight runs that are considered in each joint state for the robot that
+    moves next, the best first."""
     labels: int = pydantic.Field(2_000, ge=1)
-    """Maximum number of labels in the search for a single robot."""
+    """Maximum number of labels (partial paths) in the search for the path of a single robot."""
 
 
 class OdId(PathPlanning[OdIdParameters]):
-    """OD&ID: plans robots with conflicting paths jointly, as a group, one move at a time."""
+    """OD&ID: plans robots with conflicting paths jointly, as a group, one move at a time.
+
+    OD&ID stands for operator decomposition with independence detection.
+    """
 
     parameters_model = OdIdParameters
     planner = "od-id"

@@ -17,16 +17,17 @@ class TimeWindowsParameters(Parameters):
     """Maximum number of labels (partial paths) in a search; if no path is found by then, the robot
     waits until all planned motion is over."""
     improve_labels: int = pydantic.Field(0, ge=0)
-    """Maximum number of labels per plan when plans are improved: if a new plan delays its robot by
-    more than 2 s, this robot and those directly in front of it are planned again; 0: never."""
+    """Maximum number of labels in each search when plans are improved: if a new plan delays its
+    robot by more than 2 s, the robot and those directly in front of it are planned again. 0: plans
+    are never improved."""
     swift: bool = False
     """Whether to use faster searches; robots may then arrive slightly later than necessary."""
     swift_from: int = pydantic.Field(300, ge=0)
     """Mean number of labels per plan from which the run changes to faster searches even if `swift`
     is false; 0: never."""
     guidance: Annotated[str, pydantic.Field(min_length=1)] | None = None
-    """File with extra costs of edges, written by `rmfs traffic guide`: plans minimise arrival time
-    plus extra cost. By default, there is none."""
+    """Path of a file with extra costs of edges, written by `rmfs traffic guide`. With it, plans
+    minimise arrival time plus extra cost. Default: no extra costs."""
 
 
 class TimeWindows(PathPlanning[TimeWindowsParameters]):

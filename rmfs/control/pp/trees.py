@@ -11,9 +11,9 @@ class TreeParameters(RollingParameters):
     """Parameters of PP CBS; `nodes` and `labels` limit the search."""
 
     nodes: int = pydantic.Field(60, ge=1)
-    """Maximum number of nodes of the search tree per call."""
+    """Maximum number of nodes of the search tree that are expanded per call."""
     labels: int = pydantic.Field(2_000, ge=1)
-    """Maximum number of labels in the search for one robot."""
+    """Maximum number of labels (partial paths) in the search for the path of one robot."""
 
 
 class PbsParameters(TreeParameters):

@@ -37,17 +37,18 @@ class LateBinding(Parameters):
     """
 
     late_picks: bool = True
-    """Whether units of new orders are bound to a pod that is already on its way to their
-    station."""
+    """Whether units of a new order are bound to a pod that a robot is already carrying to the
+    order's station."""
     late_bundles: bool = True
-    """Whether new bundles are added to a pod that is already on its way to their station."""
+    """Whether a new bundle is added to the current trip of its pod if a robot is already carrying
+    the pod to the bundle's station."""
     consider: Requests = "assigned-and-completable"
-    """Orders for which pods are brought. `assigned`: orders assigned to the station.
-    `assigned-and-completable`: also orders of the station's pool that the pod completes.
-    `assigned-and-queued`: also all orders of its pool."""
+    """Orders for which pods are brought to a station. `assigned`: orders assigned to the station.
+    `assigned-and-completable`: assigned orders, and orders of the station's pool that a single pod
+    can complete. `assigned-and-queued`: assigned orders, and all orders of the station's pool."""
     reserve: Requests = "assigned-and-completable"
-    """Orders whose units are bound to a pod when it is brought. The values are those of `consider`;
-    the orders must include those of `consider`."""
+    """Orders whose units are bound to a pod when the pod is brought to a station. The values are
+    those of `consider`; the orders must include those of `consider`."""
 
     @pydantic.model_validator(mode="after")
     def _reserve_what_is_considered(self) -> LateBinding:

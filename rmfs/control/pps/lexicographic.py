@@ -51,30 +51,32 @@ class LexicographicParameters(LateBinding):
         PickWorkAmount(),
         Nearest(),
     )
-    """Criteria for choosing a pod for a pick station, in order of priority: `random`, `nearest`,
-    `pile-on` (or `work-amount`), `age`, `lateness`, `completeable`, `demand`, `fill`, `wave`."""
+    """Criteria, in order of priority, for choosing a pod for a pick station. Available criteria:
+    `random`, `nearest`, `work-amount` (with the variants `pile-on`, `age` and `lateness`),
+    `completeable`, `demand`, `fill` and `wave`."""
     replenishment_pod: Annotated[tuple[BundleCriterion, ...], AtLeastOne] = (
         BundleWorkAmount(),
         Nearest(metric="euclidean"),
         RandomCriterion(),
     )
-    """Criteria for choosing a pod for a replenishment station, in order of priority: `random`,
-    `nearest`, `work-amount`, `demand`."""
+    """Criteria, in order of priority, for choosing a pod for a replenishment station. Available
+    criteria: `random`, `nearest`, `work-amount` and `demand`."""
     next_station: Annotated[tuple[NextStationCriterion, ...], AtLeastOne] = (
         MostWork(),
         NearestNextStation(),
         RandomNextStation(),
     )
-    """Criteria, in order of priority, for choosing the next station of a carried pod,
-    if TA lets it continue to other stations: `random`, `nearest`, `work-amount` (or `pile-on`,
-    `age`, `lateness`)."""
+    """Criteria, in order of priority, for choosing the next station of a carried pod, if TA lets
+    the pod continue to other stations. Available criteria: `random`, `nearest` and `work-amount`
+    (with the variants `pile-on`, `age` and `lateness`)."""
 
 
 class Lexicographic(PodSelection[LexicographicParameters]):
     """Chooses the best pod by the first criterion; each further criterion breaks remaining ties.
 
-    The next station of a pod is chosen likewise. Ties that the criteria leave go to the pod or
-    station with the lowest number.
+    The next station of a carried pod is chosen in the same way. If all criteria leave a tie, it
+    goes to the pod or station with the lowest number. The criteria for pods are described in
+    `rmfs.control.pps.criteria`, and those for stations in `rmfs.control.pps.station_criteria`.
     """
 
     parameters_model = LexicographicParameters

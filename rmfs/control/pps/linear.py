@@ -29,13 +29,14 @@ class LinearParameters(LateBinding):
     """Parameters of PPS linear."""
 
     pick_pod: Weights = pydantic.Field(default_factory=lambda: default_weights("pick pod"))
-    """Weights of the scaled features of pods for a pick station (see the page on learning)."""
+    """Weights of the scaled features of candidate pods for a pick station (see the page on
+    learning)."""
     replenishment_pod: Weights = pydantic.Field(
         default_factory=lambda: default_weights("replenishment pod")
     )
-    """Weights of the scaled features of pods for a replenishment station."""
+    """Weights of the scaled features of candidate pods for a replenishment station."""
     next_station: Weights = pydantic.Field(default_factory=lambda: default_weights("next station"))
-    """Weights of the scaled features of stations for a pod that has been served."""
+    """Weights of the scaled features of candidate stations for a pod that has been served."""
 
     @pydantic.field_validator(*_KINDS)
     @classmethod
@@ -47,7 +48,7 @@ class Linear(PodSelection[LinearParameters]):
     """Chooses the pod, or the next station, with the greatest weighted sum of features.
 
     Ties go to the pod or station with the lowest number. Regardless of `consider`, pods are chosen
-    for orders assigned to the station, and for orders in its pool that the pod completes.
+    for orders assigned to the station, and for orders of its pool that a single pod can complete.
     """
 
     parameters_model = LinearParameters

@@ -32,11 +32,11 @@ class NetworkParameters(ScoringParameters, LateBinding):
     """Parameters of PPS network."""
 
     pick_pod: Network = pydantic.Field(default_factory=lambda: start("pick pod"))
-    """The network that scores pods for a pick station (see the page on learning)."""
+    """Neural network that scores candidate pods for a pick station (see the page on learning)."""
     replenishment_pod: Network = pydantic.Field(default_factory=lambda: start("replenishment pod"))
-    """The network that scores pods for a replenishment station."""
+    """Neural network that scores candidate pods for a replenishment station."""
     next_station: Network = pydantic.Field(default_factory=lambda: start("next station"))
-    """The network that scores stations for a pod that has been served."""
+    """Neural network that scores candidate stations for a pod that has been served."""
 
     @pydantic.field_validator(*_KINDS)
     @classmethod
@@ -47,9 +47,9 @@ class NetworkParameters(ScoringParameters, LateBinding):
 class NetworkRule(PodSelection[NetworkParameters]):
     """Chooses the pod, or the next station, that a neural network scores highest.
 
-    The network also scores the option to choose no pod (declining). No pod is chosen if this score
-    is higher than that of every pod. Regardless of `consider`, pods are chosen for orders assigned
-    to the station, and for orders in its pool that the pod completes.
+    The networks for pods can also score the option to choose no pod (declining). If this score is
+    higher than that of every pod, no pod is chosen. Regardless of `consider`, pods are chosen for
+    orders assigned to the station, and for orders of its pool that a single pod can complete.
     """
 
     parameters_model = NetworkParameters

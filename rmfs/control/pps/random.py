@@ -18,11 +18,11 @@ class RandomPodParameters(LateBinding):
     """Parameters of PPS random."""
 
     prefer_same_tier: bool = True
-    """Whether pods on the tiers of robot and station come first."""
+    """Whether pods on the same tier as the robot and the station are preferred."""
 
 
 class RandomPod(PodSelection[RandomPodParameters]):
-    """Draws one of the pods with work at the station, or the next station of a carried pod."""
+    """Chooses a random pod with work at the station, or a random next station of a carried pod."""
 
     parameters_model = RandomPodParameters
 

@@ -20,8 +20,9 @@ class CachePlaceParameters(CacheParameters):
     """Parameters of PSA cache."""
 
     metric: Metric = "time"
-    """Measure of the distance from station to storage location: `euclidean`, `manhattan` (m),
-    `path` (m along the waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
+    """Measure of the distance from the pick station to a storage location: `euclidean` or
+    `manhattan` (in m), `path` (length in m of a loaded robot's shortest path) or `time` (travel
+    time in s of a loaded robot if no other robot delays it)."""
 
 
 class Cache(PodStorageAssignment[CachePlaceParameters]):
@@ -34,9 +35,9 @@ class Cache(PodStorageAssignment[CachePlaceParameters]):
     the share of the pods in the cache that have a lower score than this pod. The score of a pod is
     the weighted mean of its utility and speed (`rmfs.control.trackers.pod_scores`).
 
-    The pod is stored in the first area that has an empty storage location. If the pod deserves a
-    place in the cache, the areas are this cache, the locations outside all caches, and the other
-    caches, in this order. If it does not, they are the locations outside all caches, and then all
+    Areas are tried in sequence until one has an empty storage location. For a pod that deserves a
+    place in the cache, the sequence is this cache, the locations outside all caches, and the other
+    caches. For any other pod, the sequence is the locations outside all caches, and then all
     caches. Within the area, the empty location nearest to the pick station is chosen; ties go to
     the waypoint with the lowest number.
     """

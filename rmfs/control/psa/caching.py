@@ -21,15 +21,17 @@ class CacheParameters(ScoreWeights, ZoneParameters):
     """Parameters of rules that decide which pods belong in a cache."""
 
     speed_weight: Weight = 0.0
-    """Weight of a pod's speed: the sum, over its units, of how often their SKU is ordered, relative
-    to the best pod."""
+    """Weight of speed in a pod's score. Speed is the number of the pod's units, each weighted by
+    how often its SKU is ordered, divided by the maximum over all pods."""
     fill_weight: Weight = 1.0
-    """Weight of the share of the cache that is free."""
+    """In the decision whether a pod deserves a place in a cache: weight of the share of the cache
+    that is free."""
     value_weight: Weight = 1.0
-    """Weight of the share of pods in the cache that have a lower score than the pod."""
+    """In the decision whether a pod deserves a place in a cache: weight of the share of the pods in
+    the cache that have a lower score than this pod."""
     threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.5
-    """A pod deserves a place in a cache if the mean of two shares, weighted by `fill_weight` and
-    `value_weight`, is above this threshold."""
+    """A pod deserves a place in a cache if the weighted mean of two shares (see `fill_weight` and
+    `value_weight`) is above this threshold."""
 
     @pydantic.model_validator(mode="after")
     def _something_counts_for_caches(self) -> CacheParameters:

@@ -21,7 +21,8 @@ class LinearParameters(Parameters):
     """Parameters of PSA linear."""
 
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("place"))
-    """Weights of the scaled features of storage locations (see the page on learning)."""
+    """Weights of the scaled features of storage locations (see the page on learning), by name;
+    features that are not named have the weight 0."""
 
     @pydantic.field_validator("weights")
     @classmethod

@@ -22,8 +22,9 @@ class NearestParameters(CongestionParameters):
     """Parameters of PSA nearest."""
 
     metric: Metric = "time"
-    """Measure of distance: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded
-    robot drives) or `time` (s, unhindered)."""
+    """Measure of the distance from the robot to a storage location: `euclidean` or `manhattan` (in
+    m), `path` (length in m of a loaded robot's shortest path) or `time` (travel time in s of a
+    loaded robot if no other robot delays it)."""
 
     @pydantic.model_validator(mode="after")
     def _seconds_only(self) -> NearestParameters:

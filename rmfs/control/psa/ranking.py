@@ -27,11 +27,11 @@ class ScoreWeights(Parameters):
     """Weights of utility and speed in the score of a pod (`rmfs.control.trackers.pod_scores`)."""
 
     utility_weight: Weight = 1.0
-    """Weight of a pod's utility: the number of its units that orders need, relative to the best
-    pod."""
+    """Weight of utility in a pod's score. Utility is the number of the pod's units that orders
+    need, divided by the maximum over all pods."""
     speed_weight: Weight = 1.0
-    """Weight of a pod's speed: the sum, over its units, of how often their SKU is ordered, relative
-    to the best pod."""
+    """Weight of speed in a pod's score. Speed is the number of the pod's units, each weighted by
+    how often its SKU is ordered, divided by the maximum over all pods."""
 
     @pydantic.model_validator(mode="after")
     def _something_counts(self) -> ScoreWeights:
@@ -44,10 +44,11 @@ class RankParameters(ScoreWeights):
     """Parameters of rules that rank pods and places."""
 
     place_buffer: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.05
-    """The pods are spread over as many places as there are pods, plus this share of all places."""
+    """With P pods and L storage locations, the target ranks of the pods are spread evenly over the
+    P + `place_buffer` x L most prominent locations."""
     corridor: Annotated[int, pydantic.Field(ge=1)] = 3
-    """Minimum number of ranks that are searched: the target, the next better, the next worse,
-    ..."""
+    """Minimum number of ranks in which empty storage locations are sought, in this order: the
+    target rank, the next better rank, the next worse rank, and so on."""
 
 
 class Ranking:

@@ -20,14 +20,15 @@ class StationBasedParameters(Parameters):
     """Parameters of PSA station-based."""
 
     stations: Literal["pick", "replenishment"] = "pick"
-    """Kind of station to which the storage location should be near."""
+    """Kind of station near which pods are stored: `pick` or `replenishment`."""
     metric: Metric = "time"
-    """Measure of distance: `euclidean`, `manhattan` (m), `path` (m along the waypoints, as a loaded
-    robot drives from the location to the station) or `time` (s, unhindered)."""
+    """Measure of the distance from a storage location to a station: `euclidean` or `manhattan` (in
+    m), `path` (length in m of a loaded robot's shortest path) or `time` (travel time in s of a
+    loaded robot if no other robot delays it)."""
 
 
 class StationBased(PodStorageAssignment[StationBasedParameters]):
-    """Chooses the empty storage location nearest to any pick station.
+    """Chooses the empty storage location with the shortest distance to the nearest pick station.
 
     With `stations` = "replenishment", replenishment stations are considered instead. The position
     of the pod has no effect. Ties go to the waypoint with the lowest number.

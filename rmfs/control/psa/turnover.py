@@ -22,11 +22,12 @@ class TurnoverPlaceParameters(TurnoverParameters):
     """Parameters of PSA turnover."""
 
     within_class: Literal["nearest", "nearest-to-station", "random"] = "nearest"
-    """Choice among the empty storage locations of a class: nearest to the pod, nearest to a pick
-    station, or random."""
+    """Choice among the empty storage locations of a class: the one nearest to the pod (`nearest`),
+    the one nearest to a pick station (`nearest-to-station`), or a random one (`random`)."""
     metric: Metric = "time"
-    """Measure of distance within a class: `euclidean`, `manhattan` (m), `path` (m along the
-    waypoints, as a loaded robot drives) or `time` (s, unhindered)."""
+    """Measure of the distances that `within_class` compares: `euclidean` or `manhattan` (in m),
+    `path` (length in m of a loaded robot's shortest path) or `time` (travel time in s of a loaded
+    robot if no other robot delays it)."""
 
 
 class Turnover(PodStorageAssignment[TurnoverPlaceParameters]):

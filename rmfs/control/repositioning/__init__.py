@@ -54,9 +54,9 @@ class Pauses(Parameters):
     """Common parameters of the repositioning rules that move pods."""
 
     robot_pause_s: Seconds = 15.0
-    """Seconds after a robot has got a move before it may get another move."""
+    """Time, in seconds, after a robot is given a move before it may be given another."""
     search_pause_s: Seconds = 15.0
-    """Seconds after an unsuccessful search for a move before the next search."""
+    """Time, in seconds, after an unsuccessful search for a move before the next search."""
 
 
 P = TypeVar("P", bound=Parameters)

@@ -32,11 +32,11 @@ class CacheMoveParameters(ZoneParameters, Pauses):
     free_places: Annotated[int, pydantic.Field(ge=0)] = 8
     """Number of storage locations of each cache to keep free."""
     empty_below: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.4
-    """A pod that is moved out of a cache goes near a replenishment station if the share of its
-    capacity in use is below this."""
+    """A pod that is moved out of a cache goes near a replenishment station if less than this share
+    of the pod's capacity is used."""
     count_backlog: bool = True
-    """Whether demand for a pod includes the units that orders in the backlog need; otherwise only
-    those that orders at stations need."""
+    """Whether demand includes the units that orders in the backlog need. If false, it consists only
+    of the units that orders at stations need."""
 
 
 class _Pairs(NamedTuple):
@@ -60,9 +60,9 @@ class Cache(Pausing[CacheMoveParameters]):
     `drop_off_places` is positive, each pick station also has a drop-off zone: the storage locations
     that robots reach fastest from the station.
 
-    If caches have more free locations than the given number, a pod from outside all caches is moved
-    into one of them. The pair of pod and cache is chosen by the following criteria; each criterion
-    breaks the ties left by the previous ones:
+    If some caches have more free locations than the given number (`free_places`), a pod from
+    outside all caches is moved into one of these caches. The pair of pod and cache is chosen by the
+    following criteria; each criterion breaks the ties left by the previous ones:
 
     1. The pod is on the robot's tier.
     2. The pod can supply the most units that orders at the station of the cache need.

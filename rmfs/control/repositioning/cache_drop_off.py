@@ -26,16 +26,17 @@ class CacheDropOffParameters(CacheParameters, Pauses):
     same_tier: bool = False
     """Whether pods are moved only by robots on their tier, and only within the tier."""
     metric: Metric = "manhattan"
-    """Measure of the length of a move: `euclidean`, `manhattan` (m), `path` (m along the waypoints,
-    as a loaded robot drives) or `time` (s, unhindered)."""
+    """Measure of the length of a move: `euclidean` or `manhattan` (in m), `path` (length in m of a
+    loaded robot's shortest path) or `time` (travel time in s of a loaded robot if no other robot
+    delays it)."""
 
 
 class CacheDropOff(Pausing[CacheDropOffParameters]):
-    """Clears drop-off zones, then moves pods into or out of caches to reach a target fill.
+    """Clears drop-off zones, then moves pods into or out of caches towards a target number of pods.
 
     The drop-off zone of a pick station consists of the storage locations that robots reach fastest
     from the station. The cache of the station consists of other storage locations near it. The
-    score of a pod, and the condition on which it deserves a place in a cache, are those of PSA
+    score of a pod, and the condition under which it deserves a place in a cache, are those of PSA
     `cache`.
 
     For each station, the actual number of occupied storage locations in its cache is compared with

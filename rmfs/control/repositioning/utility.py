@@ -21,11 +21,11 @@ class UtilityParameters(RankParameters, Pauses):
     """Parameters of repositioning utility."""
 
     search_pause_s: Seconds = 120.0
-    """Seconds after an unsuccessful search for a move before the next search."""
+    """Time, in seconds, after an unsuccessful search for a move before the next search."""
 
 
 class Utility(Pausing[UtilityParameters]):
-    """Moves the pod for which the rank of its location differs most from its target rank.
+    """Moves the pod whose location has a rank that differs most from the pod's target rank.
 
     The ranks of storage locations, the target ranks of pods, and the search for empty locations
     outward from a pod's target rank are as in PSA `utility`. Of the locations found, the one

@@ -23,7 +23,8 @@ class RandomStationParameters(Parameters):
     """Parameters of ROA random."""
 
     stick_to_station: bool = True
-    """Whether the last station is chosen again as long as it has room."""
+    """Whether the station chosen for the previous bundle is chosen again as long as it is active
+    and has room."""
 
 
 class RandomStation(ReplenishmentOrderAssignment[RandomStationParameters]):

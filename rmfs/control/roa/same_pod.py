@@ -31,14 +31,15 @@ class SamePodParameters(Parameters):
     """Parameters of ROA same-pod."""
 
     station: StationRule = "nearest"
-    """Choice among stations with room: the `nearest` to the pod; the station with the lowest
-    (`emptiest`) or highest (`fullest`) share of its capacity in use, or with the fewest
-    (`least-busy`) or most (`most-busy`) bundles; or `random`."""
+    """Which station with room is chosen: the one nearest to the pod (`nearest`), the one with the
+    lowest (`emptiest`) or highest (`fullest`) share of its capacity in use, the one with the fewest
+    (`least-busy`) or most (`most-busy`) bundles, or a random one (`random`)."""
     break_batches: bool = False
-    """Whether the bundles of a pod are sent one by one, possibly to several stations."""
+    """Whether the bundles for a pod are sent one by one, possibly to several stations, instead of
+    together."""
     first_come_first_served: bool = True
-    """Whether a batch for which no station has room blocks the batches after it. Without effect
-    with `break_batches`."""
+    """Whether a batch for which no station has room blocks the batches after it. This parameter has
+    no effect if `break_batches` is true."""
     same_tier: bool = True
     """Whether only stations on the current tier of the pod are considered."""
 
@@ -47,18 +48,19 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
     """Sends the batch of bundles for a pod to one station with room for the whole batch.
 
     A batch consists of the bundles that RPS has released for one pod and that have no station yet.
-    If they are sent together, the pod makes only one trip. Batches are considered in the order of
-    their first release. The parameter `station` determines the choice of the station. By default,
-    it is the station with the shortest straight-line distance from the pod's current position, even
-    if the pod is being carried. Ties go to the station with the lowest number.
+    If they are sent together, the pod makes only one trip. Batches are considered in the order in
+    which their first bundles were released. The parameter `station` determines the choice of the
+    station. By default, it is the station with the shortest straight-line distance from the pod's
+    current position, even if the pod is being carried. Ties go to the station with the lowest
+    number.
 
     An empty station may be chosen even if its capacity is too small for the batch. The station then
     gets as many bundles of the batch as fit.
 
     With `break_batches`, bundles are sent one by one. The parameter `station` determines the
     station of the first bundle for a pod. Each further bundle goes to the station of the previous
-    bundle for the same pod. If that station has no room or is switched off, the nearest other
-    station with room is chosen, by its distance from that station. Bundles that fit nowhere wait,
+    bundle for the same pod. If the previous station has no room or is switched off, the station
+    with room that is nearest to the previous station is chosen. Bundles that fit nowhere wait,
     without blocking later bundles.
     """
 

@@ -132,19 +132,19 @@ class BufferParameters(Parameters):
     """Parameters of RPS rules that hold bundles back."""
 
     buffer_threshold: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.8
-    """The bundles promised to a pod are released to ROA when this share of its capacity is used or
-    promised."""
+    """The bundles promised to a pod are released to ROA when at least this share of the pod's
+    capacity is used or promised to bundles."""
     buffer_timeout_s: Annotated[float, pydantic.Field(ge=0)] = 1200.0
-    """The bundles promised to a pod are released at the latest this many seconds after the last
-    promise to it."""
+    """Maximum time in seconds from the last promise to a pod until the bundles promised to the pod
+    are released to ROA."""
 
 
 class StickyParameters(BufferParameters):
     """Parameters of RPS rules that fill one pod after another."""
 
     stick_to_pod: bool = True
-    """Whether the last pod is chosen again until it has no room for a bundle or a replenishment
-    station serves it."""
+    """Whether the pod chosen for the previous bundle is chosen again, until a bundle does not fit
+    or a replenishment station serves the pod."""
 
 
 B = TypeVar("B", bound=BufferParameters)

@@ -1,4 +1,4 @@
-"""RPS emptiest: chooses the pod whose used or promised share of capacity is the smallest."""
+"""RPS emptiest: chooses the pod with the lowest share of its capacity used or promised."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 class Emptiest(Sticky[StickyParameters]):
-    """Chooses the pod whose used or promised share of capacity is the smallest.
+    """Chooses the pod with the lowest share of its capacity used or promised.
 
     All pods with room are candidates, wherever they are. Ties go to the pod with the lowest number.
     By default, the chosen pod is kept for further bundles until one of them does not fit or a

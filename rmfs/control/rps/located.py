@@ -57,8 +57,8 @@ class ReactiveParameters(BufferParameters):
     """Parameters of RPS reactive."""
 
     among_equals: Literal["random", "emptiest"] = "random"
-    """Choice among pods that are equally easy to bring: random, or the pod with the lowest share of
-    its capacity used or promised (`emptiest`)."""
+    """Choice among pods that are equally easy to bring: a random pod (`random`), or the pod with
+    the lowest share of its capacity used or promised (`emptiest`)."""
 
 
 class Reactive(Located[ReactiveParameters]):

@@ -23,14 +23,14 @@ class TurnoverPodParameters(TurnoverParameters):
     """Parameters of RPS turnover."""
 
     emptiest: bool = True
-    """Whether, within a class, the pod with the lowest share of its capacity used or promised is
-    chosen; otherwise, a pod is drawn."""
+    """Whether the pod with the lowest share of its capacity used or promised is chosen within a
+    class. If false, a random pod of the class is chosen."""
     buffer_thresholds: tuple[Share, ...] = (0.8, 0.8, 0.8)
-    """For each class: the bundles promised to a pod are released to ROA when this share of its
-    capacity is used or promised."""
+    """One value for each class: the bundles promised to a pod of the class are released to ROA when
+    at least this share of the pod's capacity is used or promised to bundles."""
     buffer_timeouts_s: tuple[Seconds, ...] = (1200.0, 1200.0, 1200.0)
-    """For each class: the bundles promised to a pod are released at the latest this many seconds
-    after the last promise to it."""
+    """One value for each class: the maximum time in seconds from the last promise to a pod of the
+    class until the bundles promised to the pod are released to ROA."""
 
     @pydantic.model_validator(mode="after")
     def _one_per_class(self) -> TurnoverPodParameters:

@@ -21,7 +21,7 @@ class ConstantRatioParameters(Parameters):
     """Parameters of SA constant-ratio."""
 
     active_share: Share = 0.5
-    """Share of all stations that is on."""
+    """Share of all stations that are on."""
     pick_share: Share = 0.5
     """Share of pick stations among the stations that are on."""
 
@@ -31,9 +31,9 @@ class ConstantRatio(StationActivation[ConstantRatioParameters]):
 
     Of n stations, m = floor(`active_share` x n) are to be on: p = floor(`pick_share` x m) pick
     stations and m - p replenishment stations. If one of these two numbers is 0, it is raised to 1.
-    If there are fewer stations of a kind than that, all stations of the kind are on. Within a kind,
-    the stations with the lowest activation numbers in the layout are on; ties go to the station
-    with the lowest number.
+    If a kind has fewer stations than are to be on, all its stations are on. Otherwise, the stations
+    of the kind with the lowest activation numbers in the layout are on; ties go to the station with
+    the lowest number.
     """
 
     parameters_model = ConstantRatioParameters

@@ -23,11 +23,12 @@ class StaffedParameters(Parameters):
     """Parameters of SA staffed."""
 
     tired: Share = 1.0
-    """Fatigue (0 to 1) from which a picker gets no new work. With 1, fatigue has no effect."""
+    """Fatigue (0 to 1) at or above which a picker gets no new work. With 1, fatigue has no
+    effect."""
     rested: Share = 0.5
     """Fatigue at or below which a tired picker gets work again; must be less than `tired`."""
     look_every_s: Annotated[float, pydantic.Field(ge=1, le=86400)] = 60.0
-    """Seconds between checks of fatigue, from 1 to 86,400."""
+    """Time between checks of fatigue, in seconds, from 1 to 86,400."""
 
     @pydantic.model_validator(mode="after")
     def _in_order(self) -> StaffedParameters:

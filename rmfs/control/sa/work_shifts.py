@@ -37,8 +37,8 @@ class WorkShiftsParameters(Parameters):
         Shift(at_s=21600.0, on=True),
         Shift(at_s=79200.0, on=False),
     )
-    """The shifts in order of time. Each has `at_s` (seconds since the start of the loop) and `on`
-    (whether stations are on from then); the first begins at 0."""
+    """The shifts in order of time. Each has `at_s` (its start, in seconds since the start of the
+    loop) and `on` (whether stations are on during the shift). The first shift must start at 0."""
     loop_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 86400.0
     """Length of the loop in seconds, after which the shifts repeat."""
 
@@ -55,8 +55,9 @@ class WorkShiftsParameters(Parameters):
 class WorkShifts(StationActivation[WorkShiftsParameters]):
     """Switches all stations on or off together, at the same times of every day.
 
-    Shifts can also repeat in a loop that is not a day long (`loop_s`). The first loop begins at
-    time of day 0. The run begins at the time of day given by the scenario (`time_of_day_s`).
+    Shifts can also repeat in a loop that is longer or shorter than a day (`loop_s`). The first loop
+    begins at time of day 0 (midnight). The run begins at the time of day given by the scenario
+    (`time_of_day_s`).
     """
 
     parameters_model = WorkShiftsParameters

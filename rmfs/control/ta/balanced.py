@@ -32,11 +32,13 @@ class BalancedParameters(TeamParameters):
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
     """Maximum number of robots working for one station."""
     search_all: bool = False
-    """Whether robots take work of all stations, the nearest first, instead of only their own."""
+    """Whether a robot may take work of any station, the nearest first, instead of only that of its
+    own station."""
     other_stations: bool = False
-    """Whether a pod that has been served may continue to another station nearby."""
+    """Whether a robot may take its pod to another station nearby when the present station has no
+    more work for the pod."""
     search_radius_m: NotNegative = 8.0
-    """With `other_stations`, maximum Euclidean distance in m from the robot to the other
+    """With `other_stations`, maximum Euclidean distance, in m, from the robot to the other
     station."""
     reposition_before_rest: bool = True
     """Whether robots without work move idle pods, if repositioning finds a move."""
@@ -51,15 +53,15 @@ class Balanced(StationTeams[BalancedParameters]):
     the other robot brings it, and the two robots exchange their stations. A robot for which there
     is no work moves an idle pod, if repositioning finds one, or rests.
 
-    Every `period_s`, if the set of stations with work has changed, the robots are redistributed.
-    The share of robots that get no station is `reposition_weight` divided by the sum of the three
-    weights; their number is rounded down. The others are divided between the two kinds of station
-    in proportion to the weight of each kind times the share of its stations that have work. Within
-    a kind, stations get one robot each in turn, up to `robots_per_station`; the stations farthest
-    from the middle of the tier come first. Robots left over go to stations of either kind that are
-    still below this limit. Robots are reassigned by distance, the nearest pair of robot and station
-    first. If no station had work at the last redistribution, the next one takes place as soon as a
-    station has work.
+    Every `period_s` seconds, if the set of stations with work has changed, the robots are
+    redistributed. The share of robots that get no station is `reposition_weight` divided by the sum
+    of the three weights; their number is rounded down. The others are divided between the two kinds
+    of station in proportion to the weight of each kind times the share of its stations that have
+    work. Within a kind, stations get one robot each in turn, up to `robots_per_station`; the
+    stations farthest from the middle of the tier come first. Robots left over go to stations of
+    either kind that are still below this limit. Robots are reassigned by distance, the nearest pair
+    of robot and station first. If no station had work at the last redistribution, the next one
+    takes place as soon as a station has work.
 
     A robot works for a station only if fewer than `robots_per_station` other robots do.
     """

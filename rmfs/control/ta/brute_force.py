@@ -47,15 +47,15 @@ class BruteForce(Solo[BruteForceParameters]):
     pods are the available ones and the one that the robot carries, if any. The pair with the least
     estimated time until service is chosen. The estimate is the sum of three terms: the time of a
     straight trip from robot to pod at top speed; the time to lift the pod (and, if the robot
-    carries another one, to set that down); and either the time of the unhindered trip to the
+    carries another pod, to set down that pod); and either the time of the unhindered trip to the
     station or the expected wait there, whichever is longer. For the carried pod, only the last term
     counts. For other pods, the delay that congestion is expected to cause on both trips can be
     added (`congestion`). Ties go to the carried pod, then to the station and the pod with the
     lowest number.
 
-    Only one kind of work (picks or bundles) is considered at a time, at first picks. If a search
-    for a robot finds no work of this kind, but work of the other kind, the rule changes to the
-    other kind for all robots.
+    The rule considers only one kind of work at a time, picks or bundles, and begins with picks. If
+    it finds no work of this kind for a robot, but work of the other kind, it changes to the other
+    kind for all robots.
 
     If the best pod is not the carried one, the robot first parks the carried pod, then fetches the
     best one. The carried pod is parked at the empty storage location for which the time to drive

@@ -15,17 +15,17 @@ class ConstantRatioParameters(TeamParameters):
     """Parameters of TA constant-ratio."""
 
     pick_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.75
-    """Share of the robots that work for pick stations, rounded down."""
+    """Share of the robots that work for pick stations; their number is rounded down."""
 
 
 class ConstantRatio(StationTeams[ConstantRatioParameters]):
     """Assigns a fixed share of robots to pick stations, the others to replenishment stations.
 
     Only stations that are active or have work left get robots. Within a kind, these stations get
-    one robot each in turn; those farthest from the middle of the tier come first. Every `period_s`,
-    if the set of stations that are active or have work left has changed, robots are reassigned, the
-    nearest pair of robot and station first. Every robot works only for its station, and continues
-    with its pod as long as the pod has work at this station.
+    one robot each in turn; those farthest from the middle of the tier come first. Every `period_s`
+    seconds, if the set of these stations has changed, robots are reassigned, the nearest pair of
+    robot and station first. Every robot works only for its station, and continues with its pod as
+    long as the pod has work at this station.
     """
 
     parameters_model = ConstantRatioParameters

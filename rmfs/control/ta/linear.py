@@ -25,7 +25,8 @@ class LinearParameters(SoloParameters):
     """Parameters of TA linear."""
 
     weights: Weights = pydantic.Field(default_factory=lambda: default_weights("ta"))
-    """Weights of the scaled features of a robot's possible tasks (see the page on learning)."""
+    """Weights of the scaled features of a robot's possible tasks (see the page on learning), by
+    name; features that are not named have the weight 0."""
 
     @pydantic.field_validator("weights")
     @classmethod

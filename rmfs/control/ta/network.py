@@ -29,8 +29,9 @@ class NetworkParameters(ScoringParameters):
     network: Network = pydantic.Field(default_factory=lambda: start("ta"))
     """The network that scores pairs of a robot and a task (see the page on learning)."""
     rest: RestRule = "nearest"
-    """Where a robot at rest goes if it must make room: the storage location nearest to the `middle`
-    of its tier, the `nearest` one, or one drawn at `random`; beneath stored pods if possible."""
+    """Storage location to which a robot at rest goes if it must make room: the one nearest to the
+    middle of its tier (`middle`), the one nearest to the robot (`nearest`), or one drawn at random
+    (`random`); if possible, beneath a stored pod."""
 
     @pydantic.field_validator("network")
     @classmethod

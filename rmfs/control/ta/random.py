@@ -28,18 +28,21 @@ class RandomTasksParameters(SoloParameters):
     """Parameters of TA random."""
 
     rest: RestRule = "random"
-    """Where idle robots wait: at the storage location nearest to the `middle` of their tier, at the
-    `nearest` one, or at one drawn at `random`; beneath stored pods if possible."""
+    """Storage location where an idle robot waits: the one nearest to the middle of its tier
+    (`middle`), the one nearest to the robot (`nearest`), or one drawn at random (`random`); if
+    possible, beneath a stored pod."""
     switch_probability: Probability = 0.1
     """Probability that a robot that needs a task changes between picking and replenishment."""
     keep_pod_probability: Probability = 0.95
     """Probability that a robot looks for more work for the pod it carries before parking it."""
     reposition_probability: Probability = 0.05
-    """Probability that a robot without a pod first asks for an idle pod to move."""
+    """Probability that a robot without a pod asks repositioning for a pod to move before it looks
+    for other work."""
     other_kind: bool = True
-    """Whether a robot takes work of the other kind if there is none of its own kind."""
+    """Whether a robot that finds no work of its own kind (picking or replenishment) may take work
+    of the other kind."""
     prefer_same_tier: bool = True
-    """Whether stations on the pod's tier come first."""
+    """Whether a station on the pod's tier is chosen if possible."""
 
 
 class RandomTasks(Solo[RandomTasksParameters]):

@@ -32,8 +32,8 @@ class TaskRolloutParameters(RolloutParameters):
     """Parameters of TA rollout."""
 
     over: Annotated[tuple[Part, ...], pydantic.Field(min_length=1)] = ("ta", "pps", "psa")
-    """Which decisions may differ from those of the base rule, PPS and PSA: the station (`ta`), the
-    pod (`pps`) or the storage location (`psa`)."""
+    """Kinds of alternatives that are tried: other stations (`ta`), other pods (`pps`) and other
+    storage locations (`psa`)."""
 
 
 class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
@@ -42,10 +42,10 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
     The TA rule `base`, with PPS and PSA, makes a default decision, which is compared with
     alternatives in simulated trials. If a pod is to be fetched for a station, the alternatives are
     work for other stations and, for a pick station, other pods; if a pod is to be stored, they are
-    other storage locations. The parameter `over` selects which of these are considered. The
-    decision that did best is made, or the default decision if the advantage over it is not certain
-    enough (`certainty`). The pacing determines how much simulated time the computation takes;
-    meanwhile, no robot gets a task.
+    other storage locations. The parameter `over` selects which kinds of alternatives are
+    considered. The decision with the best result is made, unless its advantage over the default
+    decision is not certain enough (`certainty`); then the default decision is made. The pacing
+    determines how much simulated time the computation takes; meanwhile, no robot gets a task.
     """
 
     parameters_model = TaskRolloutParameters

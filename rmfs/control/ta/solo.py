@@ -29,8 +29,9 @@ class SoloParameters(Parameters):
     """Parameters of rules that look for work for each robot separately."""
 
     rest: RestRule = "nearest"
-    """Where idle robots wait: at the storage location nearest to the `middle` of their tier, at the
-    `nearest` one, or at one drawn at `random`; beneath stored pods if possible."""
+    """Storage location where an idle robot waits: the one nearest to the middle of its tier
+    (`middle`), the one nearest to the robot (`nearest`), or one drawn at random (`random`); if
+    possible, beneath a stored pod."""
 
 
 P = TypeVar("P", bound=SoloParameters)

@@ -30,10 +30,12 @@ class TeamParameters(Parameters):
     """Parameters of rules in which every robot works for one station at a time."""
 
     period_s: NotNegative = 30.0
-    """Seconds between redistributions of the robots; 0: never."""
+    """Time, in seconds, between redistributions of the robots; 0: the robots are never
+    redistributed."""
     rest: RestRule = "middle"
-    """Where idle robots wait: at the storage location nearest to the `middle` of their tier, at the
-    `nearest` one, or at one drawn at `random`; beneath stored pods if possible."""
+    """Storage location where an idle robot waits: the one nearest to the middle of its tier
+    (`middle`), the one nearest to the robot (`nearest`), or one drawn at random (`random`); if
+    possible, beneath a stored pod."""
 
 
 P = TypeVar("P", bound=TeamParameters)

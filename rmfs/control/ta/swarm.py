@@ -33,13 +33,14 @@ class SwarmParameters(SoloParameters):
     """Parameters of TA swarm."""
 
     work_limit: Annotated[int, pydantic.Field(ge=1)] = 6
-    """Maximum number of orders or bundles of a station that count, and thus of the robots that it
-    attracts."""
+    """Maximum number of orders or bundles of a station that count for its stimulus. A station
+    attracts robots only while fewer than this number are matched with it."""
     threshold_weight: NotNegative = 1.0
-    """Weight (alpha) of the square of half `work_limit`: the higher it is, the more stimulus is
-    needed to attract robots at any distance."""
+    """Weight (alpha) of T^2, where T is half of `work_limit`, rounded down. The higher the weight,
+    the more stimulus a station needs to attract robots, at any distance."""
     distance_weight: NotNegative = 1.0
-    """Weight (beta) of the squared Manhattan distance in m."""
+    """Weight (beta) of the squared Manhattan distance, in m, from robot to station. The higher the
+    weight, the more the robots prefer near stations."""
     growth: Annotated[float, pydantic.Field(ge=1, allow_inf_nan=False)] = 1.2
     """Factor by which the multiplier of a station's stimulus grows each time another station is
     drawn."""
@@ -49,9 +50,10 @@ class SwarmParameters(SoloParameters):
     """Robots may draw rest instead of a station if more than this share of the stations has no
     stimulus."""
     other_stations: bool = False
-    """Whether a pod that has been served may continue to another station nearby."""
+    """Whether a robot may take its pod to another station nearby when the present station has no
+    more work for the pod."""
     search_radius_m: NotNegative = 5.0
-    """With `other_stations`, maximum Euclidean distance in m from the robot to the other
+    """With `other_stations`, maximum Euclidean distance, in m, from the robot to the other
     station."""
 
 

@@ -23,14 +23,19 @@ class TurnoverParameters(Parameters):
     """Parameters of turnover classes; they must be equal in rules that work together (RPS, PSA)."""
 
     class_borders: Annotated[tuple[float, ...], pydantic.Field(min_length=1)] = (0.1, 0.3, 1.0)
-    """End of each class, as a cumulative share of the storage locations in order of their distance
-    to the nearest pick station; the last is 1."""
+    """Borders of the turnover classes, as cumulative shares of the storage locations, nearest to a
+    pick station first. With [0.1, 0.3, 1.0], the first class has the nearest 10 % of the locations,
+    the second class the next 20 %, and the last class all others. The last border must be 1."""
     place_metric: Metric = "time"
-    """Measure of the distance from a storage location to its nearest pick station."""
+    """Measure of the distance from a storage location to its nearest pick station: `euclidean` or
+    `manhattan` (in m), `path` (length in m of a loaded robot's shortest path) or `time` (travel
+    time in s of a loaded robot if no other robot delays it)."""
     reallocation_period_s: Annotated[float, pydantic.Field(ge=0)] = 0.0
-    """Time, in seconds, after which pods and SKUs are reclassified; 0: never."""
+    """Pods and SKUs are reclassified when this many seconds have passed since the last
+    classification. With 0, the time does not matter."""
     reallocation_orders: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Number of new orders after which pods and SKUs are reclassified; 0: never."""
+    """Pods and SKUs are reclassified when this many orders have arrived since the last
+    classification. With 0, the number of orders does not matter."""
 
     @pydantic.field_validator("class_borders")
     @classmethod

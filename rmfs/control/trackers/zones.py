@@ -25,13 +25,13 @@ class ZoneParameters(Parameters):
 
     cache_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.25
     """Share of all storage locations that belong to caches. The cache of a pick station consists of
-    storage locations from which a robot with a pod reaches the station fastest; all caches are
+    the storage locations from which a loaded robot reaches the station fastest; all caches are
     equally large."""
     drop_off_places: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Number of storage locations in the drop-off zone of each pick station: those that a robot
-    with a pod reaches fastest from the station."""
+    """Number of storage locations in the drop-off zone of each pick station: those that a loaded
+    robot reaches fastest from the station."""
     zone_priority: ZonePriority = "drop-off"
-    """Which kind of zone chooses its storage locations first: `drop-off`, `cache`, or neither
+    """Which kind of zone gets its storage locations first: `drop-off`, `cache`, or neither
     (`equal`)."""
 
     @classmethod

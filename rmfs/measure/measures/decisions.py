@@ -13,9 +13,11 @@ if TYPE_CHECKING:
 
 SOURCES = {
     "optimiser": "based on solutions of optimisers",
-    "heuristic": "taken by controllers' own rules although they ask optimisers",
-    "stale": "proposed by optimisers but no longer valid",
-    "failed": "taken by controllers' own rules because an optimiser failed or found nothing",
+    "heuristic": "that controllers with optimisers made by their own rules, except those counted "
+    "as failed",
+    "stale": "proposed by optimisers but not applied, because they were no longer valid",
+    "failed": "that controllers made by their own rules because an optimiser failed or found "
+    "nothing",
 }
 """Sources of decisions in runs with optimisers, each with its description."""
 
@@ -32,7 +34,7 @@ class Decisions(Measure):
             "decision_wall_s",
             REAL,
             "s",
-            "Wall time spent in controllers, including calls without a decision",
+            "Wall time of all calls of controllers, including calls in which no decision was made",
             measured=True,
             better=LESS,
         ),
@@ -70,22 +72,24 @@ class Optimisers(Measure):
             "optimiser_gap_mean",
             REAL,
             "share",
-            "Mean gap between value and bound of the optimisers' solutions, relative to the cost "
-            "of the pods called (pile-on models) or to the value; empty if no gap is known",
+            "Mean relative gap of the optimisers' solutions: the difference between value and "
+            "bound, divided by the cost of the pods called (pile-on models) or by the absolute "
+            "value (other models); empty if no gap is known",
             better=LESS,
         ),
         Column(
             "optimiser_gap_abs_mean",
             REAL,
             "",
-            "Mean of abs(value - bound), in the unit of the objectives (seconds for most models)",
+            "Mean of abs(value - bound) of the optimisers' solutions, in the unit of the "
+            "objectives (seconds for most models)",
             better=LESS,
         ),
         Column(
             "paced_s",
             REAL,
             "s",
-            "Total simulated time between questions to optimisers and their answers",
+            "Total simulated time from questions to optimisers until their answers took effect",
             better=LESS,
         ),
         Column(
@@ -99,7 +103,7 @@ class Optimisers(Measure):
             "optimiser_wall_s",
             REAL,
             "s",
-            "Total wall time of all questions to optimisers",
+            "Total wall time that optimisers took for their answers",
             measured=True,
             better=LESS,
         ),
@@ -107,7 +111,7 @@ class Optimisers(Measure):
             "optimiser_wall_median_s",
             REAL,
             "s",
-            "Median wall time of a question to an optimiser",
+            "Median wall time that an optimiser took for an answer",
             measured=True,
             better=LESS,
         ),

@@ -26,9 +26,9 @@ class Delays(Measure):
             f"{part}_share",
             REAL,
             "share",
-            f"Share of the turnover of all completed orders: {what}. The times of a "
-            "line are those of its last unit; the times of an order are the means over its lines; "
-            "empty if no order was completed",
+            f"Share of the total turnover time of completed orders: {what}. The time of an order "
+            "is the mean over its lines, and that of a line refers to its last unit; empty if no "
+            "order was completed",
             better=LESS if part in _LESS else NEITHER,
         )
         for part, what in PARTS.items()

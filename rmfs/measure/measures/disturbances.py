@@ -26,15 +26,16 @@ class Disturbances(Measure):
             "disturbed_s",
             REAL,
             "s",
-            "Total duration of disturbances within the measured time",
+            "Total duration of these disturbances within the measured time; simultaneous "
+            "disturbances are added up",
         ),
         Column(
             "late_motions",
             INTEGER,
             "motions",
-            "Motions that started late, in scenarios with late motions",
+            "Motions that started late; 0 unless the scenario makes motions start late",
         ),
-        Column("lateness_s", REAL, "s", "Total time by which the late motions started late"),
+        Column("lateness_s", REAL, "s", "Sum of the delays with which these motions started"),
         Column(
             "plans_repaired",
             INTEGER,

@@ -24,8 +24,8 @@ class Energy(Measure):
             "energy_kwh",
             REAL,
             "kWh",
-            "Energy drawn by all robots, less recovered braking energy; empty if energy is not "
-            "modelled",
+            "Energy drawn by all robots, less recovered braking energy; this column and the "
+            "following ones up to energy_recuperated_kwh are empty if energy is not modelled",
             better=LESS,
         ),
         Column("energy_wh_per_unit", REAL, "Wh", "1,000 x energy_kwh / units_picked", better=LESS),
@@ -39,7 +39,12 @@ class Energy(Measure):
         Column("energy_drive_kwh", REAL, "kWh", "Energy drawn for driving"),
         Column("energy_turn_kwh", REAL, "kWh", "Energy drawn for turning on the spot"),
         Column("energy_lift_kwh", REAL, "kWh", "Energy drawn for lifting pods"),
-        Column("energy_standby_kwh", REAL, "kWh", "Energy drawn by electronics at all times"),
+        Column(
+            "energy_standby_kwh",
+            REAL,
+            "kWh",
+            "Energy drawn by the robots' electronics, which are always on",
+        ),
         Column("energy_recuperated_kwh", REAL, "kWh", "Energy recovered by braking"),
     )
 
@@ -71,15 +76,22 @@ class Batteries(Measure):
             "energy_charged_kwh",
             REAL,
             "kWh",
-            "Energy charged at chargers and by swaps; this column and those up to "
-            "battery_level_least_share are empty without batteries",
+            "Energy charged, including by battery swaps; this column and the following ones up "
+            "to battery_level_least_share are empty without batteries",
         ),
-        Column("charging_share", REAL, "share", "Share of robot time spent at charging waypoints"),
+        Column(
+            "charging_share",
+            REAL,
+            "share",
+            "Share of robot time spent charging at chargers or at waypoints with inductive "
+            "charging",
+        ),
         Column(
             "charge_task_share",
             REAL,
             "share",
-            "Share of robot time with a charge task: driving there, waiting, charging or swapping",
+            "Share of robot time with a charge task: driving to a charger or swap station, "
+            "waiting, and charging or swapping",
             better=LESS,
         ),
         Column("charges", COUNT_OR_EMPTY, "tasks", "Number of charge tasks started"),
@@ -87,24 +99,29 @@ class Batteries(Measure):
             "robots_stranded",
             COUNT_OR_EMPTY,
             "robots",
-            "Number of times that a robot stopped because its battery was below its minimum level",
+            "Number of times that a robot stopped because its battery level had fallen below the "
+            "minimum",
             better=LESS,
         ),
         Column(
             "battery_cycles_mean",
             REAL,
             "cycles",
-            "Equivalent full cycles: energy drawn / capacity, mean over batteries",
+            "Equivalent full cycles: energy drawn by a robot / capacity of its battery, mean "
+            "over robots",
             better=LESS,
         ),
         Column(
-            "battery_level_mean_share", REAL, "share", "Mean battery level, sampled every minute"
+            "battery_level_mean_share",
+            REAL,
+            "share",
+            "Mean battery level as a share of the capacity, sampled every minute",
         ),
         Column(
             "battery_level_least_share",
             REAL,
             "share",
-            "Least battery level of a robot, sampled every minute",
+            "Lowest battery level of any robot as a share of the capacity, sampled every minute",
         ),
     )
 

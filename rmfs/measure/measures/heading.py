@@ -21,19 +21,24 @@ class Heading(Measure):
             "controllers",
             TEXT,
             "",
-            "Name of the set of controllers, followed by controllers exchanged interactively",
+            "Name of the set of controllers; controllers exchanged interactively during the run "
+            "are appended",
         ),
         Column("seed", INTEGER, "", "Seed of all random streams of the run"),
         Column("warmup_s", REAL, "s", "Simulated time before the measured time"),
-        Column("duration_s", REAL, "s", "Measured time"),
-        Column("tiers", INTEGER, "tiers", "Floors of the layout"),
-        Column("robots", INTEGER, "robots", "Robots", better=LESS),
-        Column("pods", INTEGER, "pods", "Pods", better=LESS),
-        Column("pick_stations", INTEGER, "stations", "Pick stations", better=LESS),
+        Column("duration_s", REAL, "s", "Length of the measured time"),
+        Column("tiers", INTEGER, "tiers", "Number of floors"),
+        Column("robots", INTEGER, "robots", "Number of robots", better=LESS),
+        Column("pods", INTEGER, "pods", "Number of pods", better=LESS),
+        Column("pick_stations", INTEGER, "stations", "Number of pick stations", better=LESS),
         Column(
-            "replenishment_stations", INTEGER, "stations", "Replenishment stations", better=LESS
+            "replenishment_stations",
+            INTEGER,
+            "stations",
+            "Number of replenishment stations",
+            better=LESS,
         ),
-        Column("skus", INTEGER, "SKUs", "SKUs of the scenario"),
+        Column("skus", INTEGER, "SKUs", "Number of SKUs in the scenario"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:

@@ -24,30 +24,37 @@ class Motion(Measure):
         Column("distance_m", REAL, "m", "Distance driven by all robots", better=LESS),
         Column("distance_per_robot_m", REAL, "m", "distance_m / robots", better=LESS),
         Column("distance_per_unit_m", REAL, "m", "distance_m / units_picked", better=LESS),
-        Column("loaded_distance_m", REAL, "m", "Distance driven with a pod", better=LESS),
+        Column(
+            "loaded_distance_m",
+            REAL,
+            "m",
+            "Distance driven by robots that carry a pod",
+            better=LESS,
+        ),
         Column(
             "trips",
             INTEGER,
             "trips",
-            "Trips that ended: to a pod, to a station (ending at its queue zone), to a storage "
-            "location, or to a resting place",
+            "Completed trips to pods, stations, storage locations and resting places",
         ),
         Column(
             "trip_time_mean_s",
             REAL,
             "s",
-            "Mean time from the start to the end of a trip",
+            "Mean duration of a trip; a trip to a station counts until the robot enters the "
+            "queue zone",
             better=LESS,
         ),
         Column(
             "trip_delay_mean_s",
             REAL,
             "s",
-            "Mean of trip time minus its lower bound without other robots; trips to stations are "
-            "excluded, since their bound depends on the queue place",
+            "Mean delay of trips: duration minus a lower bound on the duration without other "
+            "robots; trips to stations are excluded, because their bound depends on the place in "
+            "the queue",
             better=LESS,
         ),
-        Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
+        Column("pods_lifted", INTEGER, "lifts", "Number of times that a pod was lifted"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
@@ -76,14 +83,14 @@ class RobotTime(Measure):
             "robot_busy_share",
             REAL,
             "share",
-            "Share of robot time with a pick, replenish, park or reposition task",
+            "Share of robot time in which robots have a pick, replenish, park or reposition task",
         ),
         Column("robot_moving_share", REAL, "share", "Share of robot time spent driving"),
         Column(
             "robot_queueing_share",
             REAL,
             "share",
-            "Share of robot time between entering a station's queue zone and standing at the "
+            "Share of robot time from entering the queue zone of a station to reaching the "
             "station; overlaps with the other shares",
             better=LESS,
         ),
@@ -91,7 +98,7 @@ class RobotTime(Measure):
             "robot_waiting_share",
             REAL,
             "share",
-            "Share of robot time spent standing on the way or in a queue",
+            "Share of robot time spent standing during a trip or in a queue",
             better=LESS,
         ),
         Column(

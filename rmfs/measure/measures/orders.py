@@ -36,17 +36,20 @@ class OrderTimes(Measure):
             "order_turnover_lower_quartile_s",
             REAL,
             "s",
-            "First quartile of order turnover",
+            "First quartile of the time from arrival to completion of an order",
             better=LESS,
         ),
         Column(
             "order_turnover_upper_quartile_s",
             REAL,
             "s",
-            "Third quartile of order turnover",
+            "Third quartile of the time from arrival to completion of an order",
             better=LESS,
         ),
-        *spread_columns("order_throughput_time", "time from an order's assignment to completion"),
+        *spread_columns(
+            "order_throughput_time",
+            "the time from the assignment of an order to a station until its completion",
+        ),
         Column(
             "late_share",
             REAL,
@@ -58,9 +61,10 @@ class OrderTimes(Measure):
             "orders_late", INTEGER, "orders", "Orders completed after their due time", better=LESS
         ),
         *spread_columns(
-            "order_lateness", "lateness (completion time minus due time; negative if early)"
+            "order_lateness",
+            "the lateness of orders (completion time minus due time; negative if early)",
         ),
-        *spread_columns("late_by", "lateness of the late orders"),
+        *spread_columns("late_by", "the lateness of late orders"),
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
@@ -86,30 +90,36 @@ class Backlog(Measure):
             "backlog_orders_mean",
             REAL,
             "orders",
-            "Time average of the number of orders waiting for a station",
+            "Time average of the number of orders in the backlog",
             better=LESS,
         ),
         Column(
             "backlog_orders_end",
             INTEGER,
             "orders",
-            "Orders waiting for a station at the end",
+            "Orders in the backlog at the end",
             better=LESS,
         ),
-        Column("open_orders_mean", REAL, "orders", "Time average of the open orders at stations"),
+        Column(
+            "open_orders_mean",
+            REAL,
+            "orders",
+            "Time average of the number of open orders at stations",
+        ),
         Column("orders_created", INTEGER, "orders", "Orders that arrived"),
         Column(
             "order_redraws",
             INTEGER,
             "draws",
-            "Order lines that were drawn again because stock could not serve them",
+            "Number of times that the SKU of an order line was drawn again because stock could "
+            "not serve the line",
         ),
         Column(
             "orders_short",
             INTEGER,
             "orders",
-            "Orders that, on arrival, needed more units of a SKU than were in stock and not needed "
-            "by earlier orders",
+            "Orders that, when they arrived, needed more units of a SKU than were in stock and "
+            "not yet needed for earlier orders",
             better=LESS,
         ),
     )

@@ -25,21 +25,21 @@ class Packing(Measure):
             "orders_packed",
             COUNT_OR_EMPTY,
             "orders",
-            "Orders packed; this column and those up to packing_wait_mean_s are empty if the "
-            "scenario has no packing",
+            "Orders packed; this column and the following ones up to packing_wait_mean_s are "
+            "empty if the scenario has no packing",
             better=MORE,
         ),
         Column(
             "orders_packed_split_share",
             REAL,
             "share",
-            "Share of the packed orders that came in several totes",
+            "Share of the packed orders that consisted of several totes",
         ),
         Column(
             "totes_per_order",
             REAL,
             "totes",
-            "Mean number of totes of the packed orders",
+            "Mean number of totes per packed order",
             better=LESS,
         ),
         Column(
@@ -60,38 +60,38 @@ class Packing(Measure):
             "consolidation_time_mean_s",
             REAL,
             "s",
-            "Mean time from the arrival of the first tote of a split order at the wall to the "
-            "arrival of its last",
+            "Mean time between the arrivals of the first and the last tote of a split order at "
+            "the put wall",
             better=LESS,
         ),
         Column(
             "wall_slots_mean",
             REAL,
             "slots",
-            "Time average of used slots of the put wall; the totes of an order, even those "
-            "carried by hand, use slots until the last one has arrived",
+            "Time average of the number of slots in use at the put wall; the totes of an order, "
+            "including those carried by hand, occupy slots until the last of them has arrived",
             better=LESS,
         ),
         Column(
             "wall_slots_max",
             REAL,
             "slots",
-            "Maximum number of slots of the put wall in use at a time",
+            "Maximum number of slots in use at the put wall at the same time",
             better=LESS,
         ),
         Column(
             "totes_held_mean",
             REAL,
             "totes",
-            "Time average of the number of totes that cannot leave pick stations and therefore "
-            "block slots there",
+            "Time average of the number of totes that cannot leave their pick stations and "
+            "therefore block order slots there",
             better=LESS,
         ),
         Column(
             "station_blocked_share",
             REAL,
             "share",
-            "totes_held_mean / slots of all pick stations",
+            "totes_held_mean / number of order slots of all pick stations",
             better=LESS,
         ),
         Column(
@@ -105,13 +105,14 @@ class Packing(Measure):
             "packer_busy_share",
             REAL,
             "share",
-            "Share of packers' time spent on parcels; empty if any number can pack at a time",
+            "Share of the packers' time spent on packing; empty if the number of packers is "
+            "unlimited",
         ),
         Column(
             "packing_wait_mean_s",
             REAL,
             "s",
-            "Mean time for which a complete order waits for a packer",
+            "Mean time that a complete order waits for a packer",
             better=LESS,
         ),
     )

@@ -21,21 +21,21 @@ class Pickers(Measure):
             "pickers_mean",
             REAL,
             "pickers",
-            "Time average of pickers present; this column and those up to face_turns are empty if "
-            "the scenario has no pickers",
+            "Time average of the number of pickers present; this column and the following ones "
+            "up to face_turns are empty if the scenario has no pickers",
         ),
         Column(
             "pick_time_mean_s",
             REAL,
             "s",
-            "Mean time for which a unit occupied its picker, rework included",
+            "Mean time that a picker spends on a unit, rework included",
             better=LESS,
         ),
         Column(
             "pick_time_variation",
             REAL,
             "share",
-            "Coefficient of variation of the times for which units occupied their pickers",
+            "Coefficient of variation of the times that pickers spend on units",
         ),
         Column(
             "picker_busy_share",
@@ -47,22 +47,22 @@ class Pickers(Measure):
             "picker_work_variation",
             REAL,
             "share",
-            "Coefficient of variation of the busy shares of all pickers present; 0 if the work is "
-            "balanced",
+            "Coefficient of variation of the busy shares of all pickers who were present; 0 if "
+            "the work is balanced",
             better=LESS,
         ),
         Column(
             "picker_fatigue_mean",
             REAL,
             "share",
-            "Mean fatigue of the picker at the start of a pick",
+            "Mean fatigue level of the picker at the start of a pick",
             better=LESS,
         ),
         Column(
             "picker_fatigue_max",
             REAL,
             "share",
-            "Greatest fatigue of a picker at the start of a pick",
+            "Highest fatigue level of a picker at the start of a pick",
             better=LESS,
         ),
         Column("pick_errors", COUNT_OR_EMPTY, "units", "Units picked wrongly", better=LESS),
@@ -77,7 +77,7 @@ class Pickers(Measure):
             "face_turns",
             COUNT_OR_EMPTY,
             "turns",
-            "Times that a pod was turned at a pick station to show another face",
+            "Number of times that a pod was turned at a pick station to show another face",
             better=LESS,
         ),
     )

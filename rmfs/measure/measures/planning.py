@@ -15,13 +15,13 @@ class Planning(Measure):
     """Plans, failed searches, search effort and times of path planning."""
 
     columns = (
-        Column("plans", INTEGER, "plans", "Paths planned and accepted"),
+        Column("plans", INTEGER, "plans", "Trips for which a path was planned"),
         Column("plan_failures", INTEGER, "plans", "Searches that found no path", better=LESS),
         Column(
             "replans",
             INTEGER,
             "plans",
-            "Paths changed before they were completed",
+            "Number of times that a path was replaced before the robot had completed it",
         ),
         Column(
             "expansions",
@@ -33,15 +33,16 @@ class Planning(Measure):
             "planning_charged_s",
             REAL,
             "s",
-            "Simulated time that planners took for plans of trips; 0 if plans take no time",
+            "Simulated time for which path planners were busy; 0 if planning takes no simulated "
+            "time",
             better=LESS,
         ),
         Column(
             "plan_wait_s",
             REAL,
             "s",
-            "Robot time standing without the plan that the robot needs, part of "
-            "robot_waiting_share; 0 if plans take no time",
+            "Total time for which robots stood because their plans were not ready (also counted in "
+            "robot_waiting_share); 0 if planning takes no simulated time",
             better=LESS,
         ),
         Column(
@@ -74,8 +75,8 @@ class Safety(Measure):
             "collisions",
             COUNT_OR_EMPTY,
             "events",
-            "Overlaps of two bodies found by the independent trace checker, warm-up included; "
-            "empty if the trace was not checked",
+            "Overlaps of two robots, or of a carried and a stored pod, found by the independent "
+            "trace checker, warm-up included; empty if the trace was not checked",
             better=LESS,
         ),
     )

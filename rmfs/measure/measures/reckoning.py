@@ -27,7 +27,7 @@ def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
     name
         Beginning of the columns' names.
     meaning
-        What the time is, for the descriptions of the columns.
+        What the time is, for the descriptions of the columns, with an article.
     """
     told = {
         "mean": "Mean of",

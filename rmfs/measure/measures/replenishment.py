@@ -18,21 +18,26 @@ class Replenishment(Measure):
     """Times and backlog of bundles."""
 
     columns = (
-        *spread_columns("bundle_turnover", "time from a bundle's arrival to its storage"),
-        *spread_columns("bundle_throughput_time", "time from a bundle's assignment to its storage"),
+        *spread_columns(
+            "bundle_turnover", "the time from the arrival of a bundle until it is stored"
+        ),
+        *spread_columns(
+            "bundle_throughput_time",
+            "the time from the assignment of a bundle to a pod and a station until it is stored",
+        ),
         Column("bundles_created", INTEGER, "bundles", "Bundles that arrived"),
         Column(
             "backlog_bundles_mean",
             REAL,
             "bundles",
-            "Time average of the number of bundles without a pod or station",
+            "Time average of the number of bundles not yet assigned to both a pod and a station",
             better=LESS,
         ),
         Column(
             "backlog_bundles_end",
             INTEGER,
             "bundles",
-            "Bundles without a pod or station at the end",
+            "Bundles not yet assigned to both a pod and a station at the end",
             better=LESS,
         ),
     )
@@ -58,7 +63,7 @@ class Inventory(Measure):
             "inventory_share_mean",
             REAL,
             "share",
-            "Time average of the space used by stored units / capacity of all pods",
+            "Time average of the fill level: space used by stored units / capacity of all pods",
         ),
     )
 

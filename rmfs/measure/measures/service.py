@@ -29,38 +29,39 @@ class Service(Measure):
             "on_time_share",
             REAL,
             "share",
-            "Orders done by their due time, as a share of those done or cancelled in the measured "
-            "time or overdue at its end; an order is done when packed or, without packing, when "
-            "picked",
+            "Orders done by their due time, as a share of the orders that were done or cancelled "
+            "in the measured time or are overdue at its end; an order is done when it is packed "
+            "or, without packing, when it is picked",
             better=MORE,
         ),
         Column(
             "on_time_urgent_share",
             REAL,
             "share",
-            "on_time_share of urgent orders: those of the first class (orders.due.mode = "
-            '"priority" or "classes"); empty without classes',
+            "on_time_share of urgent orders, that is, of the first class (orders.due.mode = "
+            '"priority" or "classes"); empty with fewer than two classes',
             better=MORE,
         ),
         Column(
             "on_time_ordinary_share",
             REAL,
             "share",
-            "on_time_share of orders that are not urgent; empty without classes",
+            "on_time_share of orders that are not urgent; empty with fewer than two classes",
             better=MORE,
         ),
         Column(
             "on_time_weighted_share",
             REAL,
             "share",
-            'on_time_share of all orders, weighted by class (orders.due.mode = "classes")',
+            "on_time_share in which each order counts with the weight of its class "
+            '(orders.due.mode = "classes")',
             better=MORE,
         ),
         Column(
             "lateness_p95_s",
             REAL,
             "s",
-            "95th percentile of the lateness of the orders done, negative if early",
+            "95th percentile of the lateness of the orders done; negative if early",
             better=LESS,
         ),
         Column("lateness_max_s", REAL, "s", "Maximum lateness of the orders done", better=LESS),
@@ -68,14 +69,14 @@ class Service(Measure):
             "orders_overdue_end",
             INTEGER,
             "orders",
-            "Orders past their due time and not done at the end",
+            "Orders that are past their due time, but neither done nor cancelled, at the end",
             better=LESS,
         ),
         Column(
             "oldest_order_end_s",
             REAL,
             "s",
-            "Age of the oldest order not done at the end",
+            "Age of the oldest order that is neither done nor cancelled at the end",
             better=LESS,
         ),
     )

@@ -29,7 +29,7 @@ class ShortOrders(Measure):
             "orders_partial",
             INTEGER,
             "orders",
-            "Orders completed without those of their units that were not in stock",
+            "Orders completed without some of their units, because these were not in stock",
             better=LESS,
         ),
         Column(
@@ -43,7 +43,7 @@ class ShortOrders(Measure):
             "orders_stuck_end",
             INTEGER,
             "orders",
-            "Orders that wait for a station at the end and that stock cannot serve",
+            "Orders in the backlog at the end that stock cannot serve",
             better=LESS,
         ),
         Column(

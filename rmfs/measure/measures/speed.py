@@ -21,7 +21,7 @@ class Speed(Measure):
             "wall_s",
             REAL,
             "s",
-            "Wall time of the whole simulation, without loading",
+            "Wall time of the simulation, without loading the inputs",
             measured=True,
             better=LESS,
         ),

@@ -22,26 +22,29 @@ class Stations(Measure):
             "pick_station_idle_share",
             REAL,
             "share",
-            "1 - time in which the stations handle a unit / (pick stations x duration)",
+            "1 - (total time in which pick stations handle units) / (pick stations x duration)",
             better=LESS,
         ),
         Column(
             "replenishment_station_idle_share",
             REAL,
             "share",
-            "1 - time in which the stations handle a bundle / (replenishment stations x duration)",
+            "1 - (total time in which replenishment stations handle bundles) / (replenishment "
+            "stations x duration)",
         ),
         Column(
             "pick_station_active_share",
             REAL,
             "share",
-            "Mean share of the measured time for which pick stations are switched on",
+            "Share of the measured time in which pick stations are switched on, mean over the "
+            "stations",
         ),
         Column(
             "replenishment_station_active_share",
             REAL,
             "share",
-            "Mean share of the measured time for which replenishment stations are switched on",
+            "Share of the measured time in which replenishment stations are switched on, mean "
+            "over the stations",
         ),
     )
 

@@ -22,7 +22,7 @@ class Throughput(Measure):
             "orders_completed",
             INTEGER,
             "orders",
-            "Orders that have left their pick stations completely picked",
+            "Orders that were completely picked and have left their pick stations",
             better=MORE,
         ),
         Column(
@@ -66,8 +66,8 @@ class Potential(Measure):
             "units_per_h_bound",
             REAL,
             "1/h",
-            "Proven upper bound for any run of this layout with these SKUs and this duration, "
-            "for all controllers, demands and seeds (see bounds)",
+            "Proven upper bound on units_per_h for this layout, these SKUs and this duration, "
+            "whatever the controllers, the demand and the seed (docs/bounds.md)",
         ),
         Column(
             "units_score", REAL, "share", "units_per_h / units_per_h_bound; at most 1", better=MORE
@@ -76,8 +76,9 @@ class Potential(Measure):
             "units_per_h_at_pile_on",
             REAL,
             "1/h",
-            "Units that the pick stations would pick with the pile-on of this run if they never "
-            "waited longer for a pod than motion requires (see measures): sum over stations",
+            "Units per hour that the pick stations would pick, with the pile-on of this run, if "
+            "they never waited longer for a pod than motion requires (docs/measures.md); sum "
+            "over stations; empty if the scenario has pickers",
             better=MORE,
         ),
     )

@@ -21,7 +21,7 @@ class Visits(Measure):
             INTEGER,
             "visits",
             "Visits of a pod to a pick station in which at least one unit was picked; a pod that "
-            "stays for further requests makes one visit",
+            "stays for further requests makes a single visit",
         ),
         Column(
             "units_per_visit", REAL, "units", "Pile-on: units_picked / pick_visits", better=MORE
@@ -45,7 +45,8 @@ class Visits(Measure):
             "late_bound_units_per_visit",
             REAL,
             "units",
-            "Picked units that were bound to the pod after its robot got the task, per pick visit",
+            "Picked units that were bound to their pod after a robot had got the task to bring "
+            "it, per pick visit",
             better=MORE,
         ),
     )

@@ -18,14 +18,20 @@ if TYPE_CHECKING:
     from rmfs.measure.tables.logs import Logs
 
 BUNDLE_LINES = (
-    Column("sku", INTEGER, "", "SKU, as in the table of SKUs"),
+    Column("sku", INTEGER, "", "SKU, as in the table `skus`"),
     Column("units", INTEGER, "units", "Units in the bundle"),
-    Column("created_s", REAL, "s", "Arrival"),
-    Column("stored_s", REAL, "s", "Storage; empty if not yet"),
+    Column("created_s", REAL, "s", "Time of arrival"),
+    Column(
+        "stored_s", REAL, "s", "Time at which the transfer into the pod started; empty if not yet"
+    ),
     Column("pod", INTEGER, "", "Pod; -1 if not yet decided"),
     Column("station", INTEGER, "", "Replenishment station; -1 if not yet decided"),
-    Column("file_line", INTEGER, "", "Line (CSV) or row (Parquet) of the file of bundles"),
-    Column("file_order", TEXT, "", "Name of the bundle's order in the file; may be empty"),
+    Column(
+        "file_line", INTEGER, "", "Number of the line (CSV) or row (Parquet) in the file of bundles"
+    ),
+    Column(
+        "file_order", TEXT, "", "Text in the column `order` of the file of bundles; may be empty"
+    ),
     Column("file_sku", TEXT, "", "Name of the SKU, or its number if it has no name"),
 )
 """Columns of the table; further columns of the file follow, each as `file_NAME`."""

@@ -18,16 +18,18 @@ if TYPE_CHECKING:
 
 
 CONNECTIONS = (
-    Column("from_waypoint", INTEGER, "", "Start of the trips"),
-    Column("to_waypoint", INTEGER, "", "End of the trips"),
+    Column("from_waypoint", INTEGER, "", "Waypoint at which the trips start"),
+    Column("to_waypoint", INTEGER, "", "Waypoint at which the trips end"),
     Column(
         "from_kind",
         TEXT,
         "",
-        "Kind of the start: pick, replenishment, storage, elevator, queue or road",
+        "Kind of the waypoint from_waypoint: pick, replenishment, storage, elevator, queue or road",
     ),
-    Column("to_kind", TEXT, "", "Kind of the end, with the values of from_kind"),
-    Column("trips", INTEGER, "trips", "Trips between the two, in this direction"),
+    Column("to_kind", TEXT, "", "Kind of the waypoint to_waypoint, with the same values"),
+    Column(
+        "trips", INTEGER, "trips", "Number of trips between the two waypoints, in this direction"
+    ),
     Column("time_mean_s", REAL, "s", "Mean trip time"),
     Column("time_variance_s2", REAL, "s²", "Population variance of the trip time"),
     Column("time_min_s", REAL, "s", "Shortest trip time"),
@@ -36,9 +38,9 @@ CONNECTIONS = (
 )
 
 EDGES = (
-    Column("from_waypoint", INTEGER, "", "Start of the edge"),
-    Column("to_waypoint", INTEGER, "", "End of the edge"),
-    Column("ride", FLAG, "", "Whether it is an elevator ride to another tier"),
+    Column("from_waypoint", INTEGER, "", "Waypoint at which the edge starts"),
+    Column("to_waypoint", INTEGER, "", "Waypoint at which the edge ends"),
+    Column("ride", FLAG, "", "Whether the edge is an elevator ride to another tier"),
     Column("passages", INTEGER, "passages", "Number of times that a robot used the edge"),
     Column(
         "loaded_passages",

@@ -39,97 +39,130 @@ DECISIONS = (
         "time_s",
         REAL,
         "s",
-        "When a controller was called and made a decision, or when it asked an optimiser, in s "
-        "since the start of the run",
+        "Time at which the controller was called (source rule) or asked the optimiser "
+        "(source optimiser)",
     ),
     Column("problem", TEXT, "", "Decision problem: roa, poa, rps, pps, psa, ta, sa, mm, ca"),
     Column(
         "source",
         TEXT,
         "",
-        "rule: the row is a call of a controller, with the decisions it made itself; optimiser: "
-        "the row is a question to an optimiser, with the decisions based on the answer. The "
-        "columns after `wall_s` are empty for rules",
+        "rule: the row describes a call of a controller and the decisions that it made "
+        "without an optimiser; optimiser: the row describes a question to an optimiser and "
+        "the decisions that followed from it. The columns after `wall_s` are empty if the "
+        "source is rule",
     ),
-    Column("decisions", INTEGER, "decisions", "Decisions made; for optimisers, applied + fallback"),
-    Column("wall_s", REAL, "s", "Wall time of the call or question", measured=True),
-    Column("call", COUNT_OR_EMPTY, "", "Number of the question, from the start of the run"),
-    Column("sizes", TEXT, "", "Dimensions of the question"),
-    Column("outcome", TEXT, "", "solution, nothing, failed, abandoned, or waiting at the end"),
-    Column("failure", TEXT, "", "Reason for a failure"),
-    Column("completed_s", REAL, "s", "When the answer took effect"),
+    Column(
+        "decisions",
+        INTEGER,
+        "decisions",
+        "Decisions made; if the source is optimiser, applied + fallback",
+    ),
+    Column("wall_s", REAL, "s", "Wall time of the call or of the answer", measured=True),
+    Column("call", COUNT_OR_EMPTY, "", "Number of the question, counted from the start of the run"),
+    Column("sizes", TEXT, "", "Dimensions of the question, such as orders=80"),
+    Column(
+        "outcome",
+        TEXT,
+        "",
+        "solution; nothing (the optimiser ended without a solution); failed (it crashed, "
+        "raised an error or exceeded its time limit); abandoned (the controller was "
+        "exchanged before the answer arrived); or waiting (no answer by the end)",
+    ),
+    Column("failure", TEXT, "", "Reason for the failure if the outcome is failed"),
+    Column("completed_s", REAL, "s", "Time at which the answer took effect"),
     Column("paced_s", REAL, "s", "completed_s - time_s"),
     Column("backend", TEXT, "", "Back end that solved the question"),
-    Column("status", TEXT, "", "How the solver ended: optimal, feasible, infeasible, limit"),
+    Column(
+        "status",
+        TEXT,
+        "",
+        "Final status as named by the solver, such as optimal, feasible, infeasible or limit",
+    ),
     Column("objective", REAL, "", "Value of the solution, in the model's own unit"),
-    Column("bound", REAL, "", "Proven bound on the best value"),
+    Column("bound", REAL, "", "Proven lower bound on the value of any solution"),
     Column("gap_abs", REAL, "", "abs(objective - bound), in the unit of the objective"),
     Column(
         "gap",
         REAL,
         "share",
-        "gap_abs relative to the cost of the pods called (pile-on models; empty if no pod is "
-        "called) or to abs(objective)",
+        "Relative gap: gap_abs divided by the cost of the pods called (pile-on models; empty "
+        "if no pod is called) or by abs(objective) (other models)",
     ),
-    Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
+    Column(
+        "work",
+        REAL,
+        "",
+        "Effort of the solver, in a unit of the back end that does not depend on the machine",
+    ),
     Column(
         "built",
         REAL,
         "",
-        "Size of the solver's model (nonzeros); building it is not part of `work`",
+        "Size of the solver's model (number of nonzeros); the effort of building it is not "
+        "part of `work`",
     ),
     Column("build_s", REAL, "s", "Wall time of building the solver's model", measured=True),
-    Column("solve_s", REAL, "s", "Wall time of the solver without building", measured=True),
+    Column(
+        "solve_s", REAL, "s", "Wall time of the solver without building the model", measured=True
+    ),
     Column("applied", COUNT_OR_EMPTY, "decisions", "Decisions of the solution that were applied"),
     Column(
         "stale",
         COUNT_OR_EMPTY,
         "decisions",
-        "Decisions proposed by the solution but no longer valid",
+        "Decisions of the solution that were not applied because they were no longer valid",
     ),
     Column(
         "fallback",
         COUNT_OR_EMPTY,
         "decisions",
-        "Decisions by the controller's rule because there was no solution",
+        "Decisions made by the controller's own rule because the optimiser failed or found nothing",
     ),
 )
 
 ANSWERS = (
-    Column("call", INTEGER, "", "Number of the question, from the start of the run"),
+    Column("call", INTEGER, "", "Number of the question, counted from the start of the run"),
     Column("problem", TEXT, "", "Decision problem of the controller that asked"),
-    Column("state", TEXT, "", "Hash of the question and of the state of the world"),
-    Column("requested_us", INTEGER, "µs", "Simulated time of the question"),
-    Column(
-        "completed_us", INTEGER, "µs", "Simulated time at which the answer took effect; -1: not yet"
-    ),
+    Column("state", TEXT, "", "Hash of the question and of the state of the simulated warehouse"),
+    Column("requested_us", INTEGER, "µs", "Time of the question"),
+    Column("completed_us", INTEGER, "µs", "Time at which the answer took effect; -1 if not yet"),
     Column("outcome", TEXT, "", "As in `decisions`"),
-    Column("failure", TEXT, "", "Reason for a failure"),
+    Column("failure", TEXT, "", "As in `decisions`"),
     Column("backend", TEXT, "", "Back end that solved the question; empty without an answer"),
-    Column("status", TEXT, "", "How the solver ended; empty without an answer"),
+    Column("status", TEXT, "", "As in `decisions`; empty without an answer"),
     Column("objective", REAL, "", "Value of the solution"),
-    Column("bound", REAL, "", "Proven bound on the best value"),
-    Column("work", REAL, "", "Deterministic work, in the unit of the back end"),
+    Column("bound", REAL, "", "Proven lower bound on the value of any solution"),
+    Column(
+        "work",
+        REAL,
+        "",
+        "Effort of the solver, in a unit of the back end that does not depend on the machine",
+    ),
     Column(
         "built",
         REAL,
         "",
-        "Size of the solver's model (nonzeros); building it is not part of `work`",
+        "Size of the solver's model (number of nonzeros); the effort of building it is not "
+        "part of `work`",
     ),
     Column(
         "scale",
         REAL,
         "",
-        "Number by which the absolute gap is divided to make it relative; if empty, abs(objective)",
+        "Number by which the absolute gap is divided to obtain the relative gap; if empty, "
+        "abs(objective) is used",
     ),
-    Column("wall_s", REAL, "s", "Wall time of solver and building", measured=True),
-    Column("build_s", REAL, "s", "Wall time of building", measured=True),
-    Column("solution", TEXT, "", "The solution as JSON; empty without one"),
+    Column(
+        "wall_s", REAL, "s", "Wall time of the answer, including building the model", measured=True
+    ),
+    Column("build_s", REAL, "s", "Wall time of building the model", measured=True),
+    Column("solution", TEXT, "", "The solution as JSON; empty if there is none"),
 )
 
 CONTROLLERS = (
     Column("problem", TEXT, "", "Decision problem"),
-    Column("calls", INTEGER, "calls", "Number of calls of the controller of this problem"),
+    Column("calls", INTEGER, "calls", "Number of calls of the controller of the problem"),
     Column("decisions", INTEGER, "decisions", "Decisions made"),
     Column("wall_s", REAL, "s", "Wall time of all calls", measured=True),
     Column("wall_mean_s", REAL, "s", "Mean wall time of a call", measured=True),
@@ -141,19 +174,21 @@ CONTROLLERS = (
         "heuristic_decisions",
         INTEGER,
         "decisions",
-        "Decisions made by the controller's own rule; 0 if it never asks optimisers",
+        "If the controller has an optimiser: decisions made by its own rule, except those in "
+        "failed_decisions; otherwise 0",
     ),
     Column(
         "stale_decisions",
         INTEGER,
         "decisions",
-        "Decisions proposed by optimisers but no longer valid",
+        "Decisions of optimisers' solutions that were not applied because they were no "
+        "longer valid",
     ),
     Column(
         "failed_decisions",
         INTEGER,
         "decisions",
-        "Decisions by the controller's own rule because an optimiser failed or found nothing",
+        "Decisions made by the controller's own rule because an optimiser failed or found nothing",
     ),
 )
 

@@ -30,26 +30,33 @@ if TYPE_CHECKING:
 
 PARTS = {
     "wait_assignment": "waiting for POA to assign the order to a station",
-    "wait_pod": "waiting for a pod to be chosen while some robot was at rest",
-    "wait_robot": "waiting for a pod to be chosen while all robots had work",
-    "wait_plan": "waiting for a plan before the drives to the pod and to the queue zone, if "
-    "plans take time",
-    "drive_free": "driving to the pod and with it to the queue zone, lifting included, in the "
-    "time that this takes without other robots",
-    "drive_hindered": "additional time of the drives to the pod and to the queue zone because of "
-    "other robots",
+    "wait_pod": "waiting until a robot gets the task to bring the pod, while at least one robot "
+    "is at rest",
+    "wait_robot": "waiting until a robot gets the task to bring the pod, while all robots have "
+    "work",
+    "wait_plan": "waiting for path plans before the drives to the pod and to the queue zone; 0 if "
+    "planning takes no simulated time",
+    "drive_free": "time that the drive to the pod, lifting, and the drive to the queue zone take "
+    "without other robots",
+    "drive_hindered": "additional time of the drive to the pod and of the drive to the queue zone "
+    "because of other robots",
     "queue": "waiting in the queue zone",
-    "service": "service at the station, until the last unit of the line was handled",
-    "wait_order": "waiting at the slot for the other lines of the order",
+    "service": "service at the station, until the last unit of the line has been handled",
+    "wait_order": "waiting in the order slot for the other lines of the order",
 }
-"""The parts of the time of an order line, roughly in chronological order."""
+"""The parts of the turnover time for an order line, roughly in chronological order."""
 
 DELAYS = (
-    Column("order", INTEGER, "", "Ordinal of arrival of the order"),
+    Column("order", INTEGER, "", "Order of the line, as in the table `orders`"),
     Column("sku", INTEGER, "", "SKU of the line"),
     Column("station", INTEGER, "", "Pick station"),
-    Column("robot", INTEGER, "", "Robot that brought the pod of the line's last unit"),
-    Column("completed_s", REAL, "s", "Completion of the order"),
+    Column(
+        "robot",
+        INTEGER,
+        "",
+        "Robot that brought the pod from which the line's last unit was picked",
+    ),
+    Column("completed_s", REAL, "s", "Time of completion of the order"),
     Column("turnover_s", REAL, "s", "Time from the order's arrival to its completion"),
     *(
         Column(f"{part}_s", REAL, "s", f"Part of turnover_s: {what}")

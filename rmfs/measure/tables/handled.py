@@ -15,38 +15,60 @@ if TYPE_CHECKING:
 
 
 PICKS = (
-    Column("time_s", REAL, "s", "When the unit left the pod"),
-    Column("order", INTEGER, "", "Order, as in the table of orders"),
+    Column("time_s", REAL, "s", "Time at which the pick of the unit started"),
+    Column("order", INTEGER, "", "Order, as in the table `orders`"),
     Column("sku", INTEGER, "", "SKU"),
     Column("pod", INTEGER, "", "Pod"),
     Column("robot", INTEGER, "", "Robot that brought the pod"),
     Column("station", INTEGER, "", "Pick station"),
     Column(
-        "late_bound", FLAG, "", "Whether the unit was bound to the pod after the robot got its task"
+        "late_bound",
+        FLAG,
+        "",
+        "Whether the unit was bound to the pod after the robot had got its task",
     ),
     Column(
         "picker",
         INTEGER,
         "",
-        "Picker, as in the table of pickers; -1 if the scenario has no pickers, and handling_s "
-        "and fatigue are empty, layer and face are -1, and error, noticed and turned are false",
+        "Picker, as in the table `pickers`. If the scenario has no pickers, picker, layer "
+        "and face are -1, handling_s and fatigue are empty, and error, noticed and turned "
+        "are false",
     ),
-    Column("handling_s", REAL, "s", "Time for which the unit occupied the picker, rework included"),
-    Column("layer", INTEGER, "", "Layer of the pod, 0 at the bottom; -1 if pods have none"),
-    Column("fatigue", REAL, "share", "Fatigue of the picker at the start of the pick"),
-    Column("error", FLAG, "", "Whether a wrong unit was picked"),
-    Column("noticed", FLAG, "", "Whether a wrong unit was noticed and corrected"),
-    Column("face", INTEGER, "", "Face of the pod; -1 if pods have none"),
+    Column("handling_s", REAL, "s", "Time that the picker spent on the unit, rework included"),
+    Column(
+        "layer",
+        INTEGER,
+        "",
+        "Layer of the pod from which the unit was picked, 0 at the bottom; -1 if pods have "
+        "no layers",
+    ),
+    Column("fatigue", REAL, "share", "Fatigue level of the picker at the start of the pick"),
+    Column("error", FLAG, "", "Whether the unit was picked wrongly"),
+    Column("noticed", FLAG, "", "Whether the error was noticed and corrected"),
+    Column(
+        "face",
+        INTEGER,
+        "",
+        "Face of the pod from which the unit was picked; -1 if pods have no faces",
+    ),
     Column("turned", FLAG, "", "Whether the pod was turned at the station for this unit"),
 )
 
 BUNDLES = (
     Column("sku", INTEGER, "", "SKU"),
-    Column("units", INTEGER, "units", "Units"),
-    Column("space", REAL, "space units", "Total space of the units"),
-    Column("created_s", REAL, "s", "Arrival"),
-    Column("assigned_s", REAL, "s", "When pod and station were both decided; empty if not yet"),
-    Column("stored_s", REAL, "s", "Storage; empty if not yet"),
+    Column("units", INTEGER, "units", "Units in the bundle"),
+    Column("space", REAL, "space units", "Total space of these units"),
+    Column("created_s", REAL, "s", "Time of arrival"),
+    Column(
+        "assigned_s",
+        REAL,
+        "s",
+        "Time at which both the pod and the station had been decided; empty if not yet",
+    ),
+    Column(
+        "stored_s", REAL, "s", "Time at which the transfer into the pod started; empty if not yet"
+    ),
     Column("pod", INTEGER, "", "Pod; -1 if not yet decided"),
     Column("station", INTEGER, "", "Replenishment station; -1 if not yet decided"),
     Column("robot", INTEGER, "", "Robot that brought the pod; -1 if not yet stored"),
@@ -58,8 +80,10 @@ VISITS = (
     Column("station", INTEGER, "", "Station"),
     Column("pod", INTEGER, "", "Pod"),
     Column("robot", INTEGER, "", "Robot"),
-    Column("begin_s", REAL, "s", "When the robot reached the station; may be in the warm-up"),
-    Column("end_s", REAL, "s", "When the robot was sent away; empty if not yet"),
+    Column(
+        "begin_s", REAL, "s", "Time at which the robot reached the station; may be in the warm-up"
+    ),
+    Column("end_s", REAL, "s", "Time at which the robot left the station; empty if not yet"),
     Column("units", INTEGER, "units", "Units picked in the measured time"),
     Column("bundles", INTEGER, "bundles", "Bundles stored in the measured time"),
 )

@@ -22,42 +22,49 @@ TRIP_KINDS = np.array(["to_pod", "to_station", "to_storage", "to_rest"])
 
 TRIPS = (
     Column("robot", INTEGER, "", "Robot"),
-    Column("kind", TEXT, "", "to_pod, to_station, to_storage or to_rest"),
-    Column("from_waypoint", INTEGER, "", "Start of the trip"),
-    Column("to_waypoint", INTEGER, "", "End of the trip"),
-    Column("start_s", REAL, "s", "When the robot got the command to drive"),
-    Column("end_s", REAL, "s", "Arrival (for a station: at its queue zone)"),
+    Column("kind", TEXT, "", "Kind of the trip: to_pod, to_station, to_storage or to_rest"),
+    Column("from_waypoint", INTEGER, "", "Waypoint at which the trip starts"),
+    Column("to_waypoint", INTEGER, "", "Waypoint at which the trip ends"),
+    Column("start_s", REAL, "s", "Time at which the robot got the command to drive"),
+    Column("end_s", REAL, "s", "Time of arrival; for a trip to a station, at its queue zone"),
     Column("station", INTEGER, "", "Destination station; -1 for other kinds of trips"),
     Column("loaded", FLAG, "", "Whether the robot carried a pod"),
-    Column("distance_m", REAL, "m", "Distance driven"),
+    Column("distance_m", REAL, "m", "Distance driven; for a trip to a station, up to the station"),
     Column(
         "unhindered_s",
         REAL,
         "s",
-        "Lower bound of the time without other robots (for a station: to its queue zone)",
+        "Lower bound on the duration of the trip without other robots; for a trip to a "
+        "station, up to its queue zone",
     ),
     Column(
         "hindered_s",
         REAL,
         "s",
-        "end_s - start_s - unhindered_s: delay by other robots, and by planning if plans take "
-        "time; slightly negative for some trips to stations, since robots do not stop at the "
-        "border of the queue zone",
+        "Delay: end_s - start_s - unhindered_s. The causes are other robots and, if planning "
+        "takes simulated time, planning; slightly negative for some trips to stations, since "
+        "robots do not stop at the border of the queue zone",
     ),
     Column(
         "awaited_s",
         REAL,
         "s",
-        "Part of hindered_s at the beginning of the trip in which the robot waited for its plan; 0 "
-        "if plans take no time",
+        "Part of hindered_s: time at the beginning of the trip in which the robot waited for "
+        "its plan; 0 if planning takes no simulated time",
     ),
-    Column("energy_wh", REAL, "Wh", "Energy drawn on the trip; empty if energy is not modelled"),
+    Column(
+        "energy_wh",
+        REAL,
+        "Wh",
+        "Energy drawn on the trip (for a trip to a station, up to the station); empty if "
+        "energy is not modelled",
+    ),
 )
 
 PLANS = (
     Column("robot", INTEGER, "", "Robot"),
-    Column("asked_us", INTEGER, "us", "When the robot asked for a plan"),
-    Column("begun_us", INTEGER, "us", "When a planner began the search"),
+    Column("asked_us", INTEGER, "us", "Time at which the robot requested a plan"),
+    Column("begun_us", INTEGER, "us", "Time at which a planner began the search"),
     Column("labels", INTEGER, "labels", "Labels (partial routes) expanded in the search"),
     Column("took_us", INTEGER, "us", "Simulated time that the search took"),
     Column("found", FLAG, "", "Whether the search found a route"),
@@ -65,17 +72,18 @@ PLANS = (
 )
 
 _PURPOSES = {
-    "pick": "on the way to a pick station (including the way to the pod), or at one",
-    "replenish": "on the way to a replenishment station (including the way to the pod), or at one",
-    "store": "carrying or fetching a pod for another purpose",
-    "rest": "with neither a pod nor a task that involves one",
+    "pick": "while fetching a pod for a pick station, bringing it there, or standing there",
+    "replenish": "while fetching a pod for a replenishment station, bringing it there, or standing "
+    "there",
+    "store": "while fetching or carrying a pod for any other purpose",
+    "rest": "without a pod and without a task that involves a pod",
 }
 
 HEAT = (
     Column("waypoint", INTEGER, "", "Waypoint"),
     Column("tier", INTEGER, "", "Floor"),
-    Column("x_m", REAL, "m", "Position"),
-    Column("y_m", REAL, "m", "Position"),
+    Column("x_m", REAL, "m", "x coordinate"),
+    Column("y_m", REAL, "m", "y coordinate"),
     Column("visits", INTEGER, "visits", "Number of times that a robot passed or stopped here"),
     Column(
         "loaded_visits",
@@ -92,7 +100,7 @@ HEAT = (
         )
         for task, what in _PURPOSES.items()
     ),
-    Column("waiting_s", REAL, "s", "Time that robots stood here, excluding idle ones"),
+    Column("waiting_s", REAL, "s", "Time that robots stood here, excluding idle robots"),
     Column("loaded_waiting_s", REAL, "s", "Time that robots stood here with a pod"),
     *(
         Column(f"{task}_waiting_s", REAL, "s", f"Time that robots stood here, {what}")

@@ -20,12 +20,19 @@ if TYPE_CHECKING:
     from rmfs.scenario.streams.order_file import OrderFile
 
 ORDER_LINES = (
-    Column("order", INTEGER, "", "Order, as in the table of orders"),
-    Column("sku", INTEGER, "", "SKU, as in the table of SKUs"),
+    Column("order", INTEGER, "", "Order, as in the table `orders`"),
+    Column("sku", INTEGER, "", "SKU, as in the table `skus`"),
     Column("units", INTEGER, "units", "Units ordered"),
-    Column("picked_s", REAL, "s", "When its last unit was picked; empty if not yet"),
-    Column("file_line", INTEGER, "", "Line (CSV) or row (Parquet) of the file of orders"),
-    Column("file_order", TEXT, "", "The order's name in the file"),
+    Column(
+        "picked_s",
+        REAL,
+        "s",
+        "Time at which the handling of the line's last unit ended; empty if not yet picked",
+    ),
+    Column(
+        "file_line", INTEGER, "", "Number of the line (CSV) or row (Parquet) in the file of orders"
+    ),
+    Column("file_order", TEXT, "", "Name of the order in the file"),
     Column("file_sku", TEXT, "", "Name of the SKU, or its number if it has no name"),
 )
 """Columns of the table; further columns of the file follow, each as `file_NAME`."""

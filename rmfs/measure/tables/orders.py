@@ -19,32 +19,61 @@ if TYPE_CHECKING:
 
 
 ORDERS = (
-    Column("order", INTEGER, "", "Ordinal of arrival, from the start of the run"),
-    Column("name", TEXT, "", "Name of the order in the file of orders; empty if it was drawn"),
+    Column(
+        "order",
+        INTEGER,
+        "",
+        "Number of the order, in sequence of arrival from the start of the run",
+    ),
+    Column(
+        "name",
+        TEXT,
+        "",
+        "Name of the order in the file of orders; empty if the order was generated",
+    ),
     Column("priority", TEXT, "", 'Class of the order; empty unless orders.due.mode = "classes"'),
-    Column("station", INTEGER, "", "Pick station; -1 if not assigned"),
-    Column("lines", INTEGER, "lines", "Order lines, without those cut to zero units"),
-    Column("units", INTEGER, "units", "Units ordered"),
-    Column("created_s", REAL, "s", "Arrival"),
+    Column(
+        "station",
+        INTEGER,
+        "",
+        "Pick station (of a split order, the one assigned last); -1 until the whole order is "
+        "assigned",
+    ),
+    Column(
+        "lines",
+        INTEGER,
+        "lines",
+        "Number of order lines, excluding lines that lost all their units for lack of stock",
+    ),
+    Column("units", INTEGER, "units", "Units ordered, including units_cut"),
+    Column("created_s", REAL, "s", "Time of arrival"),
     Column("due_s", REAL, "s", "Due time"),
-    Column("assigned_s", REAL, "s", "Assignment to the station; empty if not yet"),
-    Column("completed_s", REAL, "s", "Completion; empty if not yet"),
+    Column(
+        "assigned_s",
+        REAL,
+        "s",
+        "Time of the assignment to a station (of a split order, the first); empty if not yet "
+        "assigned",
+    ),
+    Column("completed_s", REAL, "s", "Time of completion; empty if not yet completed"),
     Column(
         "cancelled_s",
         REAL,
         "s",
-        "When the order was cancelled for lack of stock; empty if it was not",
+        "Time at which the order was cancelled for lack of stock; empty if it was not",
     ),
     Column("units_cut", INTEGER, "units", "Units not delivered for lack of stock"),
     Column("turnover_s", REAL, "s", "completed_s - created_s"),
     Column("throughput_time_s", REAL, "s", "completed_s - assigned_s"),
     Column("lateness_s", REAL, "s", "completed_s - due_s; negative if early"),
-    Column("pods", INTEGER, "pods", "Pods from which units of the order were picked so far"),
+    Column(
+        "pods", INTEGER, "pods", "Number of pods from which units of the order have been picked"
+    ),
     Column(
         "energy_wh",
         REAL,
         "Wh",
-        "Energy drawn by robots for the units of the order so far (docs/energy.md); empty if "
+        "Energy that robots have drawn for the units of the order (docs/energy.md); empty if "
         "energy is not modelled",
     ),
 )

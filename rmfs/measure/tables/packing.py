@@ -18,45 +18,53 @@ if TYPE_CHECKING:
     from rmfs.measure.tables.logs import Logs
 
 PARCELS = (
-    Column("order", INTEGER, "", "Ordinal of arrival of the order"),
-    Column("totes", INTEGER, "totes", "Totes that have left pick stations; one per part"),
-    Column("created_s", REAL, "s", "Arrival of the order"),
+    Column("order", INTEGER, "", "Order, as in the table `orders`"),
+    Column("totes", INTEGER, "totes", "Number of totes of the order that have left pick stations"),
+    Column("created_s", REAL, "s", "Time of arrival of the order"),
     Column("due_s", REAL, "s", "Due time of the order"),
     Column(
         "picked_s",
         REAL,
         "s",
-        "When the last tote of the order left its pick station; empty if not yet",
+        "Time at which the last tote of the order left its pick station; empty if not yet",
     ),
     Column(
         "arrived_s",
         REAL,
         "s",
-        "When the first tote of the order reached the put wall; empty if none did",
+        "Time at which the first tote of the order reached the put wall; empty if none has",
     ),
     Column(
         "consolidated_s",
         REAL,
         "s",
-        "When the last tote of the order reached the put wall; empty if not yet, or never",
+        "Time at which the last tote of the order reached the put wall; empty if not yet, or "
+        "if the order was packed without using the wall",
     ),
-    Column("packing_s", REAL, "s", "When a packer started with the order; empty if not yet"),
-    Column("packed_s", REAL, "s", "When the order was packed; empty if not yet"),
+    Column(
+        "packing_s", REAL, "s", "Time at which a packer started to pack the order; empty if not yet"
+    ),
+    Column("packed_s", REAL, "s", "Time at which the order was packed; empty if not yet"),
     Column("cycle_s", REAL, "s", "packed_s - created_s"),
 )
 
 TOTES = (
-    Column("order", INTEGER, "", "Ordinal of arrival of the order"),
+    Column("order", INTEGER, "", "Order, as in the table `orders`"),
     Column("station", INTEGER, "", "Pick station"),
-    Column("released_s", REAL, "s", "When the tote left the pick station"),
+    Column("released_s", REAL, "s", "Time at which the tote left the pick station"),
     Column(
-        "arrived_s", REAL, "s", "When the tote reached the put wall; empty if not yet, or never"
+        "arrived_s",
+        REAL,
+        "s",
+        "Time at which the tote reached the put wall; empty if not yet, or if the order was "
+        "packed without using the wall",
     ),
     Column(
         "consolidated_s",
         REAL,
         "s",
-        "When all totes of the order had arrived; empty if not yet, or never",
+        "Time at which the last tote of the order reached the put wall; empty if not yet, or "
+        "if the order was packed without using the wall",
     ),
     Column(
         "by_hand",

@@ -21,25 +21,35 @@ PICKERS = (
     Column("picker", INTEGER, "", "Number of the picker; pickers of the first shift come first"),
     Column("shift", INTEGER, "", "Number of the shift"),
     Column("station", INTEGER, "", "Pick station"),
-    Column("speed", REAL, "share", "Relative speed; with 1, times are those of the station"),
-    Column("present_s", REAL, "s", "Time at the station"),
+    Column(
+        "speed",
+        REAL,
+        "share",
+        "Relative speed; a picker with speed 1 needs the handling time of the station",
+    ),
+    Column("present_s", REAL, "s", "Time for which the picker was at the station"),
     Column("work_s", REAL, "s", "Part of present_s spent on units"),
-    Column("busy_share", REAL, "share", "work_s / present_s; empty for pickers never present"),
+    Column(
+        "busy_share", REAL, "share", "work_s / present_s; empty for pickers who were never present"
+    ),
     Column("units_picked", INTEGER, "units", "Units picked"),
     Column(
         "unit_mean_s",
         REAL,
         "s",
-        "Mean time of a unit, rework included; empty if no unit was picked",
+        "Mean time spent on a unit, rework included; empty if no unit was picked",
     ),
     Column(
         "fatigue_mean",
         REAL,
         "share",
-        "Mean fatigue at the start of picks; empty if there were none",
+        "Mean fatigue level at the start of a pick; empty if no unit was picked",
     ),
     Column(
-        "fatigue_max", REAL, "share", "Greatest fatigue at the start of a pick; 0 without picks"
+        "fatigue_max",
+        REAL,
+        "share",
+        "Highest fatigue level at the start of a pick; 0 if no unit was picked",
     ),
     Column("errors", INTEGER, "units", "Units picked wrongly"),
     Column("errors_unnoticed", INTEGER, "units", "Wrongly picked units that were not noticed"),

@@ -25,33 +25,44 @@ PRIORITIES = (
         "priority",
         TEXT,
         "",
-        "Class of orders: its name in the scenario; urgent or ordinary if the scenario has these "
-        "two classes; all if it has no classes",
+        'Name of the class of orders; "urgent" or "ordinary" if orders.due.mode = '
+        '"priority"; "all" if there are no classes',
     ),
-    Column("weight", REAL, "", "Weight of the class's lateness"),
-    Column("orders", INTEGER, "orders", "Orders done, cancelled, or overdue at the end"),
+    Column("weight", REAL, "", "Weight of the lateness of orders of the class"),
+    Column("orders", INTEGER, "orders", "Orders done or cancelled, or overdue at the end"),
     Column("orders_done", INTEGER, "orders", "Orders done: packed or, without packing, picked"),
     Column(
         "orders_overdue_end",
         INTEGER,
         "orders",
-        "Orders past their due time and not done at the end",
+        "Orders that are past their due time, but neither done nor cancelled, at the end",
     ),
     Column("on_time_share", REAL, "share", "Orders done by their due time, as a share of `orders`"),
     Column("lateness_mean_s", REAL, "s", "Mean lateness of the orders done; negative if early"),
-    Column("lateness_p95_s", REAL, "s", "95th percentile of the lateness of the orders done"),
+    Column(
+        "lateness_p95_s",
+        REAL,
+        "s",
+        "95th percentile of the lateness of the orders done; negative if early",
+    ),
     Column("lateness_max_s", REAL, "s", "Maximum lateness of the orders done"),
     Column(
-        "late_by_mean_s", REAL, "s", "Mean tardiness of the orders done: lateness, or 0 if on time"
+        "late_by_mean_s",
+        REAL,
+        "s",
+        "Mean tardiness of the orders done: their lateness, or 0 if on time",
     ),
     Column(
         "cycle_mean_s",
         REAL,
         "s",
-        "Mean time from arrival until the order is done, over the orders done",
+        "Mean time from the arrival of an order until it is done",
     ),
     Column(
-        "cycle_p95_s", REAL, "s", "95th percentile of the time from arrival until the order is done"
+        "cycle_p95_s",
+        REAL,
+        "s",
+        "95th percentile of the time from the arrival of an order until it is done",
     ),
 )
 

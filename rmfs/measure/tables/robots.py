@@ -31,19 +31,20 @@ ROBOTS = (
         for state, what in {
             "moving": "driving",
             "turning": "turning on the spot",
-            "waiting": "standing on the way",
+            "waiting": "standing during a trip or in a queue",
             "served": "standing at a station",
             "transfer": "lifting or setting down",
             "riding": "in an elevator",
             "idle": "standing idle",
-            "queueing": "from a queue zone's border to its station (overlaps with the others)",
+            "queueing": "from entering a queue zone to reaching its station (overlaps with the "
+            "columns above)",
         }.items()
     ),
     Column(
         "awaiting_plan_s",
         REAL,
         "s",
-        "Time standing on the way without the plan that it needs (part of waiting_s)",
+        "Time standing because the robot's plan was not ready (part of waiting_s)",
     ),
     *(
         column
@@ -53,15 +54,19 @@ ROBOTS = (
             Column(f"task_{task}_s", REAL, "s", f"Time with a {task} task"),
         )
     ),
-    Column("pods_lifted", INTEGER, "lifts", "Pods lifted"),
+    Column("pods_lifted", INTEGER, "lifts", "Number of times that the robot lifted a pod"),
     Column("units_picked", INTEGER, "units", "Units picked from pods that the robot brought"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored in pods that the robot brought"),
     *(
         Column(name, REAL, unit, f"{meaning}; empty if energy is not modelled")
         for name, unit, meaning in (
             ("energy_wh", "Wh", "Energy drawn, less recovered braking energy"),
-            ("charged_wh", "Wh", "Energy charged at chargers"),
-            ("charging_s", "s", "Time at chargers"),
+            ("charged_wh", "Wh", "Energy charged, including by battery swaps"),
+            (
+                "charging_s",
+                "s",
+                "Time charging at chargers or at waypoints with inductive charging",
+            ),
         )
     ),
     Column("level_wh", REAL, "Wh", "Energy in the battery at the end; empty without batteries"),

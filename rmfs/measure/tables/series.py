@@ -24,10 +24,15 @@ if TYPE_CHECKING:
 
 
 SERIES = (
-    Column("time_s", REAL, "s", "End of the interval, since the start of the run"),
-    Column("interval_s", REAL, "s", "Length of the interval: a minute; the last may be shorter"),
+    Column("time_s", REAL, "s", "End of the interval"),
+    Column(
+        "interval_s",
+        REAL,
+        "s",
+        "Length of the interval: one minute; the last interval may be shorter",
+    ),
     Column("units_picked", INTEGER, "units", "Units picked in the interval"),
-    Column("lines_picked", INTEGER, "lines", "Lines finished in the interval"),
+    Column("lines_picked", INTEGER, "lines", "Order lines finished in the interval"),
     Column("orders_created", INTEGER, "orders", "Orders that arrived in the interval"),
     Column("orders_completed", INTEGER, "orders", "Orders completed in the interval"),
     Column("bundles_created", INTEGER, "bundles", "Bundles that arrived in the interval"),
@@ -37,32 +42,33 @@ SERIES = (
         "backlog_orders",
         INTEGER,
         "orders",
-        "Orders waiting for a station at the end of the interval",
+        "Orders in the backlog at the end of the interval",
     ),
     Column("open_orders", INTEGER, "orders", "Open orders at stations at the end of the interval"),
     Column(
         "backlog_bundles",
         INTEGER,
         "bundles",
-        "Bundles without a pod or station at the end of the interval",
+        "Bundles not yet assigned to both a pod and a station at the end of the interval",
     ),
     Column(
         "inventory_share",
         REAL,
         "share",
-        "Space used / capacity of all pods, at the end of the interval",
+        "Space used by stored units / capacity of all pods, at the end of the interval",
     ),
     Column(
         "pick_station_busy_share",
         REAL,
         "share",
-        "Share of the interval that pick stations spent handling units",
+        "Share of the interval in which pick stations handled units, mean over the stations",
     ),
     Column(
         "replenishment_station_busy_share",
         REAL,
         "share",
-        "Share of the interval that replenishment stations spent handling bundles",
+        "Share of the interval in which replenishment stations handled bundles, mean over "
+        "the stations",
     ),
     *(
         Column(
@@ -74,17 +80,19 @@ SERIES = (
         for task in ("pick", "replenish", "park", "reposition", "rest")
     ),
     *(
-        Column(f"robots_{state}", REAL, "robots", f"Mean number of robots {what} in the interval")
+        Column(
+            f"robots_{state}", REAL, "robots", f"Mean number, over the interval, of robots {what}"
+        )
         for state, what in {
             "moving": "driving",
             "turning": "turning",
-            "waiting": "standing on the way",
+            "waiting": "standing during a trip or in a queue",
             "served": "standing at a station",
             "transfer": "lifting or setting down",
             "riding": "in an elevator",
             "idle": "standing idle",
-            "queueing": "between a queue zone's border and its station (also counted in the "
-            "other columns)",
+            "queueing": "that have entered the queue zone of a station and not yet reached the "
+            "station (also counted in the columns above)",
         }.items()
     ),
     Column(
@@ -103,7 +111,7 @@ SERIES = (
         "level_least_wh",
         REAL,
         "Wh",
-        "Least energy in a battery at the end of the interval; empty without batteries",
+        "Lowest energy in any battery at the end of the interval; empty without batteries",
     ),
 )
 

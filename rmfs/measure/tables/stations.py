@@ -24,35 +24,43 @@ if TYPE_CHECKING:
 
 
 STATIONS = (
-    Column("station", INTEGER, "", "Number in the common numbering: pick stations come first"),
+    Column(
+        "station",
+        INTEGER,
+        "",
+        "Number of the station; pick stations come first, then replenishment stations",
+    ),
     Column("kind", TEXT, "", "pick, replenishment, or the name of another kind"),
     Column("waypoint", INTEGER, "", "Waypoint at which the robot stands while its pod is served"),
     Column("tier", INTEGER, "", "Floor"),
-    Column("x_m", REAL, "m", "Position"),
-    Column("y_m", REAL, "m", "Position"),
-    Column("queue_places", INTEGER, "places", "Places in the queue, including the station's own"),
+    Column("x_m", REAL, "m", "x coordinate"),
+    Column("y_m", REAL, "m", "y coordinate"),
+    Column(
+        "queue_places", INTEGER, "places", "Places in the queue, including the place at the station"
+    ),
     Column(
         "visits",
         INTEGER,
         "visits",
-        "Visits of pods in which something was handled; for other kinds, all visits",
+        "Visits of pods in which at least one unit or bundle was handled; for other kinds of "
+        "stations, all visits",
     ),
-    Column("visit_time_mean_s", REAL, "s", "Mean length of the visits that ended"),
+    Column("visit_time_mean_s", REAL, "s", "Mean duration of the visits that have ended"),
     Column("units_picked", INTEGER, "units", "Units picked"),
     Column(
         "late_bound_units",
         INTEGER,
         "units",
-        "Picked units that were bound to the pod after its robot got the task",
+        "Picked units that were bound to their pod after a robot had got the task to bring it",
     ),
-    Column("lines_picked", INTEGER, "lines", "Lines finished"),
+    Column("lines_picked", INTEGER, "lines", "Order lines finished"),
     Column("orders_completed", INTEGER, "orders", "Orders completed"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored"),
     Column(
         "busy_s",
         REAL,
         "s",
-        "Time spent handling units or bundles; for other kinds, serving pods or robots",
+        "Time spent handling units or bundles; for other kinds of stations, serving pods or robots",
     ),
     Column("idle_share", REAL, "share", "1 - busy_s / duration"),
     Column("active_share", REAL, "share", "Time switched on / duration"),
@@ -60,7 +68,7 @@ STATIONS = (
         "units_per_h_at_pile_on",
         REAL,
         "1/h",
-        "As in `footprint`, for this station; pick stations only",
+        "As in `footprint`, for this station; empty for other kinds of stations",
     ),
     Column("units_per_visit", REAL, "units", "Pile-on: units_picked / visits"),
     Column("orders_per_visit", REAL, "orders", "orders_completed / visits"),
@@ -69,20 +77,21 @@ STATIONS = (
         "order_slots",
         INTEGER,
         "orders",
-        "Maximum number of open orders at a time; 0 for other kinds",
+        "Number of order slots; 0 for stations other than pick stations",
     ),
     Column(
         "capacity",
         REAL,
         "space units",
-        "Maximum space of the bundles assigned to it at a time; replenishment stations only",
+        "Maximum total space of the bundles assigned to the station at a time; empty for "
+        "stations other than replenishment stations",
     ),
     Column(
         "without_work_share",
         REAL,
         "share",
-        "Share of the measured time in which no order (pick) or bundle (replenishment) was "
-        "assigned to the station; empty for other kinds",
+        "Share of the measured time in which no order (pick station) or bundle "
+        "(replenishment station) was assigned to the station; empty for other kinds",
     ),
 )
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 PODS = (
     Column("pod", INTEGER, "", "Pod"),
-    Column("capacity", REAL, "space units", "Capacity"),
+    Column("capacity", REAL, "space units", "Capacity of the pod"),
     Column("used_end", REAL, "space units", "Space used by stored units at the end"),
     Column(
         "waypoint_end",
@@ -27,22 +27,34 @@ PODS = (
         "",
         "Waypoint at which the pod stands at the end; -1 if it is carried",
     ),
-    Column("lifts", INTEGER, "lifts", "Number of times the pod was lifted"),
-    Column("pick_visits", INTEGER, "visits", "Visits to pick stations in which units were picked"),
-    Column("replenishment_visits", INTEGER, "visits", "Visits in which bundles were stored"),
+    Column("lifts", INTEGER, "lifts", "Number of times that the pod was lifted"),
+    Column(
+        "pick_visits",
+        INTEGER,
+        "visits",
+        "Visits to pick stations in which at least one unit was picked",
+    ),
+    Column(
+        "replenishment_visits",
+        INTEGER,
+        "visits",
+        "Visits to replenishment stations in which at least one bundle was stored",
+    ),
     Column("units_picked", INTEGER, "units", "Units picked from the pod"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored in the pod"),
 )
 
 SKUS = (
     Column("sku", INTEGER, "", "SKU"),
-    Column("name", TEXT, "", "Name in the file of SKUs, or the number if it has no name"),
+    Column(
+        "name", TEXT, "", "Name in the file of SKUs, or the number of the SKU if it has no name"
+    ),
     Column("popularity", REAL, "", "Relative weight with which the SKU is ordered"),
     Column("space", REAL, "space units", "Space of one unit"),
     Column("lines_picked", INTEGER, "lines", "Order lines finished"),
     Column("units_picked", INTEGER, "units", "Units picked"),
     Column("bundles_stored", INTEGER, "bundles", "Bundles stored"),
-    Column("units_end", INTEGER, "units", "Units on pods at the end"),
+    Column("units_end", INTEGER, "units", "Units in stock (on pods) at the end"),
     Column("pods_end", INTEGER, "pods", "Pods that hold units of the SKU at the end"),
 )
 

@@ -18,38 +18,39 @@ class ScheduleParameters(LevelParameters):
     """Parameters of CA schedule."""
 
     method: Literal["highs", "cp_sat", "greedy"] = "highs"
-    """Solution method: HiGHS or CP-SAT, starting from the greedy rule, or the greedy rule alone."""
+    """Solution method: `greedy` (a rule), or `highs` or `cp_sat`, which start from the solution of
+    `greedy`."""
     period_s: Positive = 60.0
-    """Seconds between schedules."""
+    """Time, in seconds, between two schedules."""
     slot_share: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.1
-    """Length of a time slot, given as the share of a battery that the most powerful charging place
-    charges in it."""
+    """Length of a time slot, expressed as the share of a battery's capacity that the most powerful
+    charger supplies in this time."""
     slots: Count = 10
-    """Number of time slots to plan ahead."""
+    """Number of time slots planned ahead."""
     longest: Count = 7
     """Maximum length of a stay at a charging place, in time slots."""
     worth: NotNegative = 1.15
-    """Value of energy: the robot time that it is worth, as a multiple of the time in which the most
-    powerful charging place supplies it."""
+    """Value of energy in robot time, as a multiple of the time in which the most powerful charger
+    supplies the energy."""
     idle: Share = 0.6
-    """Cost of time away from work of a robot that is not needed, as a share of the cost of time for
-    which a robot is missing."""
+    """Cost of time that a robot spends away from work while it is not needed, as a share of the
+    cost of this time if it is needed."""
     curve: Share = 0.2
-    """Curvature of the value of energy: it is (1 + `curve`) times its average in an empty battery,
-    and (1 - `curve`) times its average in a full one."""
+    """Curvature of the value of energy: the first unit of energy in an empty battery is worth (1 +
+    `curve`) times the average, and the last one in a full battery (1 - `curve`) times."""
     margin_share: Share = 0.0
-    """Safety margin, as a share of the capacity, above the level that is enough for any task. The
-    model penalises levels below the sum of the two."""
+    """Safety margin, as a share of the capacity: battery levels are penalised if they are less than
+    this margin above the level that suffices for any task."""
     window_s: Positive = 1200.0
     """Length in seconds of the past period from which the number of needed robots is forecast."""
     cases: Count = 4
-    """Number of equally likely cases of the number of needed robots in the forecast."""
+    """Number of equally likely cases in the forecast of the number of needed robots."""
     nodes: Count = 20
-    """Maximum number of branch-and-bound nodes for HiGHS."""
+    """Maximum number of branch-and-bound nodes of HiGHS."""
     work_s: Positive = 0.25
-    """Limit of CP-SAT in deterministic seconds, which are close to wall time."""
+    """Limit of the search by CP-SAT in deterministic seconds, which are close to wall time."""
     gap: NotNegative = 0.005
-    """Relative gap between value and bound at which the search ends."""
+    """Relative gap between objective value and bound at which the search ends."""
 
     @property
     def limits(self) -> Limits:

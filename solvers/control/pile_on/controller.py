@@ -30,15 +30,16 @@ if TYPE_CHECKING:
 
 
 class PileOnControl(PickOrderAssignment[PileOnParameters]):
-    """Maintains a plan: orders that wait for slots, and called pods that wait for robots.
+    """Assigns orders and calls pods for them jointly, by an optimisation model, for a high pile-on.
 
-    A model extends the plan. It is asked, at most once in `buffer_s` seconds, after the events
-    selected by `triggers`: a station for which no pod is called runs out of work within the
-    horizon, a pod reaches a station, or a station with a free slot has no planned orders. The model
-    determines which orders go to which station, and which pods are called for them. It also returns
-    *prospects*: orders that the same pods can serve as soon as slots are free. Planned orders are
-    assigned to free slots, and free robots fetch the called pods. Parts of the plan that have
-    become invalid are dropped.
+    The controller maintains a plan: orders that wait for slots, and pods that have been called to
+    stations and wait for robots. The model extends the plan. It is asked, at most once in
+    `buffer_s` seconds, after the events selected by `triggers`: a station for which no pod is
+    called runs out of work within `horizon_s`, a pod reaches a station, or a station with a free
+    slot has no planned orders. The model determines which orders go to which station, and which
+    pods are called for them. It also returns *prospects*: orders that the same pods can serve as
+    soon as slots are free. Planned orders are assigned to free slots, and free robots fetch the
+    called pods. Parts of the plan that have become invalid are dropped.
 
     A robot that is to bring a pod to a station fetches the nearest pod called for this station. If
     the optimiser fails, its method `greedy` decides. PPS lexicographic with its defaults chooses

@@ -20,58 +20,64 @@ class JointParameters(SearchParameters):
 
     method: Method = "joint"
     """Solution method: `greedy` (repeatedly calls the pod with the greatest gain); `joint` (the
-    solution of `greedy`, improved by CP-SAT); `cp_sat` (proven optimality, for small sites);
-    `hadgs` (the heuristic HADGS of Jiao et al. 2025)."""
+    solution of `greedy`, improved by CP-SAT); `cp_sat` (CP-SAT until `gap` is reached, for small
+    sites); `hadgs` (the heuristic HADGS of Jiao et al. 2025)."""
     split: bool = False
-    """Whether the lines of an order may go to different stations at different times."""
+    """Whether the lines of an order may be assigned separately, to different stations or at
+    different times."""
     split_orders: Annotated[int, pydantic.Field(ge=0)] | None = None
-    """With `split`, maximum number of orders that may be split at a time, regardless of the put
-    wall; default: as many as the wall holds, or any number without a wall."""
+    """With `split`, maximum number of orders that are split at the same time; the space on the put
+    wall is then ignored. Default: as many as the put wall holds; without a put wall, any number."""
     part_s: NotNegative = 0.0
-    """With `split`, cost of an additional tote of an order, in seconds of a robot: an order is
-    split only if it would cost more to call pods that can serve it whole now."""
+    """With `split`, cost of an additional tote of an order, in seconds of robot time. An order is
+    split only if calling pods to serve it whole at one station now would cost more."""
     later: bool = False
-    """Whether an order may take a slot before pods are called for all of its lines; not possible
+    """Whether an order may get a slot before pods are called for all of its lines; not possible
     with `split`."""
     open_line_s: NotNegative = 100.0
-    """With `later`, cost of each line for which no pod is called yet, in seconds of a robot."""
+    """With `later`, cost, in seconds of robot time, of each line of an order that gets a slot
+    before a pod is called for the line."""
     when_needed: bool = True
-    """Whether pods are called only for stations that run out of work within the horizon; otherwise
-    whenever a slot can be filled, as in the model M1G and the heuristic HADGS of Jiao et al."""
+    """Whether pods are called only for stations that run out of work within `horizon_s` or need
+    units that no pod brings. If false, pods are called whenever a slot can be filled, as in the
+    model M1G and the heuristic HADGS of Jiao et al. (2025)."""
     horizon_s: NotNegative = 90.0
-    """Seconds of work below which a station needs another pod."""
+    """With `when_needed` or `by_work`, seconds of work below which a station needs another pod."""
     by_work: bool = False
-    """Whether pods are called only for stations with less work under way than the horizon, even if
-    orders at other stations still lack pods. This prevents queues at one station while another runs
-    out of work."""
+    """Whether pods are called only for stations with less than `horizon_s` of work on pods that are
+    present, under way or called, even if orders at stations with more work still lack pods. This
+    prevents queues at one station while another runs out of work."""
     buffer_s: NotNegative = 3.0
-    """Minimum seconds between two questions, so that one question covers several decisions."""
+    """Minimum time, in seconds, between two questions to the optimiser, so that one question covers
+    several decisions."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
-    """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
+    """Limit of the search by CP-SAT in deterministic seconds, which are close to wall time."""
     reward_s: NotNegative = 15.0
-    """Value of each order (if orders are split: of each line) that the pods of one station
-    (present, under way or called) can serve completely, in seconds of a robot."""
+    """Value, in seconds of robot time, of each order (with `split`, of each line) that the pods of
+    one station (present, under way or called) can serve completely."""
     unit_s: NotNegative = 0.0
-    """Additional value of each unit of an order rewarded by `reward_s`, in seconds of a robot."""
+    """Additional value, in seconds of robot time, of each unit of an order rewarded by
+    `reward_s`."""
     visit_s: NotNegative = 60.0
-    """Cost of a visit in addition to the trip to the station, in seconds of a robot."""
+    """Cost of a visit, in seconds of robot time, in addition to the trip to the station."""
     balance: NotNegative = 0.0
-    """Additional cost of a visit, in seconds of a robot, for each second by which the work of its
-    station exceeds that of the station with least work. This spreads work over stations and their
-    pickers."""
+    """Additional cost of a visit, in seconds of robot time, for each second by which the work of
+    the visited station exceeds that of the station with the least work. This spreads work over
+    stations and their pickers."""
     age_reward: NotNegative = 0.005
-    """Additional value of assigning an order, in seconds of a robot, per second that the order has
-    waited, times the weight of its class."""
+    """Additional value of assigning an order, in seconds of robot time, per second that the order
+    has waited, times the weight of the order's class."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 1
-    """Number of slots per station that are reserved for orders that the pod at the head of the
+    """Number of slots of each station that are reserved for orders that the pod at the head of the
     station's queue can serve."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 20
-    """Steps of the search for a bound on the value of each decision; more steps improve it. The
-    bound is only recorded. If the run is paced by work, these steps take no simulated time."""
+    """Number of steps in which a bound on the value of each decision is computed; more steps
+    improve the bound. The bound is only recorded. With the pacing `work`, these steps take no
+    simulated time."""
     pods_per_sku: Count = 4
-    """Number of candidate pods per needed SKU and station passed to CP-SAT."""
+    """Number of pods that CP-SAT considers for each needed SKU at each station."""
     orders_per_slot: Count = 64
-    """Number of candidate orders per free slot passed to CP-SAT."""
+    """Number of orders that CP-SAT considers for each free slot."""
 
     @property
     def pruning(self) -> Pruning:
@@ -106,6 +112,6 @@ class PileOnParameters(JointParameters):
     """Parameters of POA pile-on."""
 
     triggers: tuple[AsksPileOn, ...] = ("pod-at-station", "free-slot", "short-of-work")
-    """Events after which the optimiser is asked: a pod has reached a station, a slot is free for
-    which nothing is planned, or a station runs out of work within the horizon (if
-    `when_needed`)."""
+    """Events after which the optimiser is asked: `pod-at-station` (a pod has reached a station),
+    `free-slot` (a station with a free slot has no planned orders) and `short-of-work` (with
+    `when_needed`, a station has less than `horizon_s` seconds of work)."""

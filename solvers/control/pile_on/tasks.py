@@ -44,33 +44,39 @@ class PileOnTasksParameters(JointParameters):
     """Parameters of TA pile-on; by default, the weights of the objective are those of M1G."""
 
     triggers: tuple[AsksTasks, ...] = ("pod-at-station", "robot-free", "new-order")
-    """Events after which the optimiser is asked: a pod has reached a station, a robot is free, or
-    an order has arrived while robots rest."""
+    """Events after which the optimiser is asked: `pod-at-station` (a pod has reached a station),
+    `robot-free` (a robot needs a task) and `new-order` (an order has arrived while a robot
+    rests)."""
 
     when_needed: bool = False
-    """Whether pods are called only for stations that run out of work within the horizon; otherwise
-    whenever a slot can be filled, as in the model M1G of Jiao et al. (2025)."""
+    """Whether pods are called only for stations that have less than `horizon_s` seconds of work, or
+    orders that still lack pods. If false, pods are called whenever a slot can be filled, as in the
+    model M1G of Jiao et al. (2025)."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Number of slots per station that are reserved for orders that the pod at the head of the
+    """Number of slots of each station that are reserved for orders that the pod at the head of the
     station's queue can serve."""
     reward_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 40.0
-    """Value of each order (if orders are split: of each line) that the pods of one station
-    (present, under way or called) can serve completely, in seconds of a robot."""
+    """Value, in seconds of robot time, of each order (with `split`, of each line) that the pods of
+    one station (present, under way or called) can serve completely."""
     visit_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Cost of a visit in addition to the trips, in seconds of a robot."""
+    """Cost of a visit, in seconds of robot time, in addition to the trips to the pod and to the
+    station."""
     age_reward: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.0
-    """Additional value of assigning an order, in seconds of a robot, per second that the order has
-    waited, times the weight of its class."""
+    """Additional value of assigning an order, in seconds of robot time, per second that the order
+    has waited, times the weight of the order's class."""
     replenishment_share: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.33
     """Maximum share of all robots that may work for replenishment stations at a time; at least one
     robot may."""
     other_stations: bool = False
-    """Whether a pod that has been served may continue to another station nearby."""
+    """Whether a robot may take its pod to another station nearby when the present station has no
+    more work for the pod."""
     search_radius_m: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 8.0
-    """With `other_stations`, maximum Euclidean distance from a robot to the other station, in m."""
+    """With `other_stations`, maximum Euclidean distance, in m, from the robot to the other
+    station."""
     rest: RestRule = "nearest"
-    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
-    `random`."""
+    """Storage location where an idle robot waits: the one nearest to the middle of its tier
+    (`middle`), the one nearest to the robot (`nearest`), or one drawn at random (`random`); if
+    possible, beneath a stored pod."""
 
 
 _ASKS: dict[Trigger, AsksTasks] = {
@@ -81,20 +87,20 @@ _ASKS: dict[Trigger, AsksTasks] = {
 
 
 class PileOnTasks(JointAllocation[PileOnTasksParameters]):
-    """Asks a model which orders take slots, which pods come, and which robots fetch them.
+    """Asks a model which orders get slots, which pods are called, and which robots fetch the pods.
 
-    After the events in `triggers`, at most once in `buffer_s` seconds, the model is asked if a
-    station has a free slot for which no order is planned, or has open requests that the pods under
-    way to the station cannot serve. The model chooses from the robots that carry no pod and have no
-    task other than resting. Its answer is added to a plan: planned orders get slots when slots are
-    free, and called pods are fetched by the robots that the answer names. If the robot named for a
-    pod is no longer free, the nearest free robot fetches the pod.
+    The model is used after the events in `triggers`, at most once in `buffer_s` seconds, and only
+    if some station has a free slot for which no order is planned, or open requests that the pods
+    under way to the station cannot serve. The model chooses from the robots that carry no pod and
+    have no task other than resting. Its answer is added to a plan: planned orders get slots when
+    slots are free, and called pods are fetched by the robots that the answer names. If the robot
+    named for a pod is no longer free, the nearest free robot fetches the pod.
 
     All other decisions are made by rules. A robot keeps its pod at the station while there is work
     for the pod, then (with `other_stations`) takes it to pick stations nearby that the pod can
-    serve, and finally parks it where PSA says. Up to `replenishment_share` of the robots bring pods
-    to replenishment stations, each to the nearest station with work; PPS lexicographic chooses the
-    pods. A robot rests if it gets no task. If the optimiser fails, its method `greedy` decides.
+    serve, and finally parks it where PSA chooses. Up to `replenishment_share` of the robots bring
+    pods to replenishment stations, each to the nearest station with work; PPS lexicographic chooses
+    the pods. A robot rests if it gets no task. If the optimiser fails, its method `greedy` decides.
     """
 
     parameters_model = PileOnTasksParameters

@@ -43,21 +43,22 @@ _WORTH_A_PLAN = 2
 class PlanningControl(JointAllocation[PlanningParameters]):
     """Plans the next visits of pods to every pick station, but carries out only what is due.
 
-    The model is asked, at most once in `buffer_s` seconds, when a pod has reached a pick station,
-    when a robot without a pod is free, or when an order has arrived while a robot rests or a
-    station has more than two free slots. It plans several visits to each station, and the orders
-    that they serve. Orders are planned whole, and each keeps its slot until its last line has been
-    picked; with `split`, single lines are planned instead. The search for a plan starts from the
-    previous plan. Only two kinds of steps of the plan are carried out. An order gets its slot once
-    its first pod is under way. The next pod of a station is fetched, by the free robot nearest to
-    the pod, if the pods under way to the station bring less than `horizon_s` seconds of work.
+    The model is used, at most once in `buffer_s` seconds, after one of three events: a pod has
+    reached a pick station; a robot without a pod needs a task; or an order has arrived while a
+    robot rests or a station has more than two free slots. The model plans several visits to each
+    station, and the orders that these visits serve. Orders are planned whole, and each keeps its
+    slot until its last line has been picked; with `split`, single lines are planned instead. The
+    search for a plan starts from the previous plan. Only two kinds of steps of the plan are carried
+    out. An order gets its slot once its first pod is under way. The next pod of a station is
+    fetched, by the free robot nearest to the pod, if the pods under way to the station bring less
+    than `horizon_s` seconds of work.
 
     All other decisions are made by rules. A robot keeps its pod at the station while there is work
     for the pod. Then it takes the pod to a replenishment station where bundles for the pod wait or,
-    if there is no such station, parks it where PSA says. While the stock is below `stock_floor`,
-    some robots (`bundle_share`) bring pods to replenishment stations; while the stock is below
-    `stock_ceiling`, so do robots that no pick station needs. If the optimiser fails, its start rule
-    makes the plan.
+    if there is no such station, parks it where PSA chooses. While the stock (the share of the space
+    on pods that is used) is below `stock_floor`, some robots (`bundle_share`) bring pods to
+    replenishment stations. While it is below `stock_ceiling`, robots that no pick station needs do
+    so as well. If the optimiser fails, its start rule makes the plan.
     """
 
     parameters_model = PlanningParameters

@@ -21,60 +21,66 @@ class PlanningParameters(SearchParameters):
 
     method: Literal["lns", "greedy", "cp_sat"] = "lns"
     """Solution method: `lns` (large neighbourhood search), `cp_sat` (exact, for very small sites),
-    or `greedy`, the start rule of both."""
+    or `greedy`, the start rule of the other two."""
     split: bool = False
-    """Whether lines of an order may be served at different stations, or at different times."""
+    """Whether the lines of an order may be assigned separately, to different stations or at
+    different times."""
     split_orders: Annotated[int, pydantic.Field(ge=0)] | None = None
-    """With `split`, maximum number of orders that may be split at a time, regardless of the put
-    wall; default: as many as the wall holds, or any number without a wall."""
+    """With `split`, maximum number of orders that are split at the same time; the space on the put
+    wall is then ignored. Default: as many as the put wall holds; without a put wall, any number."""
     visits: Annotated[int, pydantic.Field(ge=1, le=32)] = 6
-    """Number of visits planned ahead per station, besides those of pods under way."""
+    """Maximum number of new visits planned per station, in addition to the visits of pods under
+    way."""
     stations: Count = 64
-    """Maximum number of pick stations planned at a time, those with the least work under way; the
-    plans of the others are kept."""
+    """Maximum number of pick stations planned at a time. If there are more, those with the least
+    work under way are planned, and the plans of the others are kept."""
     steps: Annotated[int, pydantic.Field(ge=0)] | None = None
-    """Steps of the search per plan, for each station that is planned; default: 75 times the number
-    of pick stations of the site, as plans of many stations take longer to improve."""
+    """Number of search steps per plan and planned station. Default: 75 times the number of pick
+    stations of the site, as plans of many stations take longer to improve."""
     buffer_s: NotNegative = 1.0
-    """Minimum seconds between two questions, so that one question covers several decisions."""
+    """Minimum time, in seconds, between two questions to the optimiser, so that one question covers
+    several decisions."""
     horizon_s: NotNegative = 60.0
-    """Seconds of work on pods under way below which a station is sent another pod."""
+    """A station gets another pod when the pods under way to it bring less than this number of
+    seconds of work."""
     unit_s: NotNegative = 10.0
-    """Value of a unit served, in seconds of a robot."""
+    """Value of serving a unit, in seconds of robot time."""
     order_s: NotNegative = 5.0
-    """Value of completing an order, in seconds of a robot."""
+    """Value of completing an order, in seconds of robot time."""
     age_reward: NotNegative = 0.002
-    """Additional value of completing an order without a slot, in seconds of a robot, per second
-    that the order has waited."""
+    """Additional value of completing an order that has no slot yet, in seconds of robot time, per
+    second that the order has waited."""
     late_s: NotNegative = 0.0
-    """Additional value of completing an order that is due, in seconds of a robot, times the weight
-    of its class. Before the due time, the value is smaller: by the factor e for every
-    `late_within_s` that is left. As later visits count less (`decay`), serving the order later
-    costs part of this value (apparent tardiness cost, Vepsalainen and Morton 1987). 0: due times do
-    not count."""
+    """Additional value of completing an order that is due, in seconds of robot time, times the
+    weight of the order's class. If t seconds are left until the due time, the value is multiplied
+    by exp(-t / `late_within_s`). As later visits count less (`decay`), postponing the order costs
+    part of this value (apparent tardiness cost, Vepsalainen and Morton 1987). 0: due times are
+    ignored."""
     late_within_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 300.0
-    """Seconds before the due time at which the value `late_s` is smaller by the factor e. It should
-    be about as long as the time from a plan to its last visit."""
+    """Time, in seconds, before the due time at which the value `late_s` is smaller by the factor e.
+    It should be about as long as the time from a plan to its last visit."""
     open_s: NotNegative = 60.0
-    """Additional value of serving a line whose order already has a slot, in seconds of a robot.
-    This keeps plans stable and frees slots."""
+    """Additional value of serving a line whose order already has a slot, in seconds of robot time.
+    This value keeps plans stable and frees slots."""
     visit_s: NotNegative = 100.0
-    """Value of a visit, whatever it serves, in seconds of a robot: it keeps the station busy."""
+    """Value of a visit, in seconds of robot time, regardless of what is served: a visit keeps the
+    station busy."""
     balance: NotNegative = 0.0
-    """Additional cost of a visit, in seconds of a robot, for each second by which the work of its
-    station exceeds that of the station with least work. This spreads work over stations and their
-    pickers."""
+    """Additional cost of a visit, in seconds of robot time, for each second by which the work of
+    the visited station exceeds that of the station with the least work. This spreads work over
+    stations and their pickers."""
     decay: Annotated[float, pydantic.Field(gt=0, le=1)] = 0.9
-    """Weight of each visit of a station relative to the visit before."""
+    """Weight of each visit to a station, relative to the previous visit to the station."""
     expected_s: NotNegative = 0.0
-    """Horizon in seconds of future orders considered in a plan, drawn from past orders. They raise
-    the value of pods and get no slots. 0: none."""
+    """Horizon, in seconds, of the future orders considered in a plan, which are drawn from past
+    orders. Future orders raise the value of pods that can serve them, but get no slots. 0: no
+    future orders are considered."""
     scenarios: Count = 4
-    """With `expected_s`, number of draws of future orders for each plan; the value of a future
+    """With `expected_s`, number of draws of future orders for each plan. The value of each future
     order is divided by this number."""
     expected_worth: Annotated[float, pydantic.Field(gt=0, le=1)] = 1.0
-    """With `expected_s`, value of serving all orders of a draw, as a share of their value if they
-    were waiting."""
+    """With `expected_s`, value of a future order as a share of the value that it would have if it
+    were already waiting, before the division by `scenarios`."""
     stock_floor: Annotated[float, pydantic.Field(ge=0, le=1)] = 0.6
     """While less than this share of the space on pods is used, some robots (`bundle_share`) always
     bring pods to replenishment stations; otherwise, only robots that no pick station needs do
@@ -86,12 +92,13 @@ class PlanningParameters(SearchParameters):
     """Share of all robots (at least one robot) that bring pods to replenishment stations while the
     stock is below `stock_floor`."""
     robots_per_station: Count = 9
-    """Maximum number of robots at, or on their way to, one pick station."""
+    """Maximum number of robots at one pick station or on their way there."""
     rest: RestRule = "nearest"
-    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
-    `random`."""
+    """Storage location where an idle robot waits: the one nearest to the middle of its tier
+    (`middle`), the one nearest to the robot (`nearest`), or one drawn at random (`random`); if
+    possible, beneath a stored pod."""
     bound_steps: Annotated[int, pydantic.Field(ge=0)] = 0
-    """Steps of the search for a bound on the value of each plan. The bound is only recorded. If the
-    run is paced by work, these steps take no simulated time."""
+    """Number of steps in which a bound on the value of each plan is computed. The bound is only
+    recorded. With the pacing `work`, these steps take no simulated time."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 1.0
-    """Limit of `cp_sat` in deterministic seconds of CP-SAT."""
+    """Limit of the search by `cp_sat` in deterministic seconds, which are close to wall time."""

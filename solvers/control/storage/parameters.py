@@ -15,6 +15,7 @@ class StorageParameters(BufferParameters):
     """Parameters of the forecast of visits."""
 
     horizon_s: Positive = 3600.0
-    """Horizon of the forecast of visits, in seconds: about as long as pods stay stored."""
+    """Horizon, in seconds, of the forecast of visits; it should be about as long as pods stay
+    stored."""
     refresh_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
-    """Seconds after which the forecast is recomputed."""
+    """Time, in seconds, after which the forecast of visits is recomputed."""

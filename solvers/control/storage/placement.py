@@ -67,14 +67,14 @@ class PlacementParameters(StorageParameters):
     """Parameters of PSA placement."""
 
     method: Literal["assignment", "greedy"] = "assignment"
-    """Solution method: the optimal assignment, or (`greedy`) a rule in which the most visited pods
-    choose first."""
+    """Solution method: `assignment` (optimal) or `greedy` (a rule by which the pods with the most
+    expected visits choose first)."""
     later_weight: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 1.0
-    """Weight of a second of robot time for later visits, relative to one of the current trip."""
+    """Weight of robot time for later visits, relative to robot time for the current trip."""
 
 
 class PlacementControl(Ahead[PlacementParameters]):
-    """Weighs the trip to a storage location against later trips between location and stations.
+    """Stores pods where the current trip and the expected later trips are shortest in total.
 
     All pods that robots carry to stations or have to store now are assigned to empty storage
     locations jointly (linear assignment problem). The time of a pod's later trips is the mean time

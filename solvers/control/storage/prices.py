@@ -53,27 +53,31 @@ class PricesParameters(StorageParameters):
     """Parameters of PSA prices."""
 
     method: Literal["clarabel", "greedy"] = "clarabel"
-    """Computation of the steady state: the convex program, or (`greedy`) storage by turnover."""
+    """Solution method for the steady state: `clarabel` (the convex program) or `greedy` (a rule by
+    which the pods with the most expected visits get the best zones)."""
     classes: Count = 8
-    """Number of classes of pods, by expected visits."""
+    """Number of classes into which pods are divided by expected visits."""
     zones: Count = 8
-    """Number of zones of places, by distance from the pick stations."""
+    """Number of zones into which storage locations are divided by distance from the pick
+    stations."""
     period_s: Positive = 300.0
-    """Seconds after which prices are recomputed."""
+    """Time, in seconds, after which prices are recomputed."""
     congestion_s_h: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.02
-    """Congestion: seconds by which each visit is delayed, per visit per hour to the same zone."""
+    """Delay by congestion, in s h: a visit by a pod from a zone is delayed by this number of
+    seconds for each visit per hour that the pods of this zone make."""
 
 
 class PricesControl(PodStorageAssignment[PricesParameters]):
-    """Computes prices of storage locations (places), and stores each pod where it costs least.
+    """Computes prices of storage locations (places), and stores each pod at the least cost.
 
     Places are divided into zones by distance from the pick stations. Every `period_s` seconds, pods
     are divided into classes by expected visits, and a convex program determines how many pods of
     each class should be stored in each zone in a steady state. It takes delays by congestion into
     account. The price of a place, a dual price of this program, is the robot time that one more
     place in its zone would save per hour. A pod goes to the empty place with the least cost: the
-    time of the trips there and away, plus the delay, plus the price times the expected stay. Until
-    the first answer, and after a failure, pods go to the nearest empty place.
+    time of the trips to the place and from there to a pick station, plus the delay, plus the price
+    times the expected stay. Until the first answer, and after a failure, pods go to the nearest
+    empty place.
     """
 
     parameters_model = PricesParameters

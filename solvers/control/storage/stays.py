@@ -59,28 +59,31 @@ class StaysParameters(StorageParameters, SearchParameters):
     """Parameters of PSA stays."""
 
     method: Literal["cp_sat", "highs", "greedy"] = "cp_sat"
-    """Solution method: `greedy` assigns zones to one stay after another, beginning with those whose
-    cost depends most on the zone; `cp_sat` and `highs` (to optimality) start from its solution."""
+    """Solution method: `greedy` (a rule that chooses zones for one stay after another, beginning
+    with those whose cost depends most on the zone), or `cp_sat` or `highs`, which improve the
+    solution of `greedy`."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
-    """Limit of the search in deterministic seconds of CP-SAT, which are close to wall time."""
+    """Limit of the search by CP-SAT in deterministic seconds, which are close to wall time. The
+    method `highs` has no such limit."""
     gap: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.001
-    """Relative gap between value and bound at which the search ends."""
+    """Relative gap between objective value and bound at which the search ends."""
     horizon_s: Positive = 900.0
-    """Horizon in seconds. Stored pods that stay longer are not modelled; they only occupy their
-    places."""
+    """Horizon, in seconds, of the plan and of the forecast of visits. Stored pods that are expected
+    to stay longer only occupy their storage locations."""
     zones: Annotated[int, pydantic.Field(ge=1)] = 8
-    """Number of zones of places, by distance from the pick stations."""
+    """Number of zones into which storage locations are divided by distance from the pick
+    stations."""
 
 
 class StaysControl(Ahead[StaysParameters]):
-    """Chooses zones for returning pods by the times at which pods will be fetched.
+    """Chooses zones for returning pods by the times at which pods are expected to be fetched.
 
     Storage locations (places) are divided into zones by distance from the pick stations. A
     returning pod is assumed to be fetched at the end of its expected stay, which is limited to the
     horizon. A stored pod whose expected stay is shorter than the horizon is assumed to leave its
     zone at the end of that stay; the other stored pods only occupy their places. An integer program
-    chooses the zones so that no zone is ever overfull and robot time is least. Within its zone, a
-    returning pod is stored at the empty place nearest to the station from which it returns.
+    chooses the zones so that no zone is ever overfull and robot time is least. Within the chosen
+    zone, a returning pod is stored at the empty place nearest to the station from which it returns.
     """
 
     parameters_model = StaysParameters

@@ -35,13 +35,14 @@ class TaskParameters(BufferParameters):
     """Parameters shared by TA controllers that ask an optimiser."""
 
     robots_per_station: Annotated[int, pydantic.Field(ge=1)] = 9
-    """Maximum number of robots at, or on their way to, one station."""
+    """Maximum number of robots at one station or on their way there."""
     rule_meanwhile: bool = True
-    """Whether a rule decides for robots with a pod while an answer is pending, since these robots
+    """Whether a rule decides for robots with a pod while an answer is pending, since such robots
     may block others. Robots without a pod wait for the answer."""
     rest: RestRule = "nearest"
-    """Where idle robots wait: near the `middle` of their tier, at the `nearest` place, or at
-    `random`."""
+    """Storage location where an idle robot waits: the one nearest to the middle of its tier
+    (`middle`), the one nearest to the robot (`nearest`), or one drawn at random (`random`); if
+    possible, beneath a stored pod."""
 
 
 P = TypeVar("P", bound=TaskParameters)

@@ -70,21 +70,24 @@ class DispatchParameters(CongestionParameters, TaskParameters):
     """Parameters of TA dispatch."""
 
     method: Method = "balance"
-    """Solution method: `matching` considers travel and due times, `balance` also queues; `greedy`
-    assigns the tasks of `balance` one after another to the robot that arrives first."""
+    """Solution method: `matching` (considers travel and due times), `balance` (also considers
+    queues), or `greedy` (as `balance`, but tasks are assigned one after another, each to the robot
+    that arrives first)."""
     pick_value_s: NotNegative = 300.0
-    """Value of bringing a pod to a pick station, in seconds of a robot's time: the trip and the
-    wait in the queue may take this long."""
+    """Value of bringing a pod to a pick station, in seconds of robot time; a task that costs more
+    is left out."""
     bundle_value_s: NotNegative = 300.0
-    """Value of bringing a pod to a replenishment station, in seconds of a robot's time."""
+    """Value of bringing a pod to a replenishment station, in seconds of robot time; a task that
+    costs more is left out."""
     service_s: NotNegative = 60.0
-    """Estimated service time, in seconds, of each pod at, or on its way to, a station; a further
-    pod waits for all of them."""
+    """Estimated service time, in seconds, of each pod at a station or on its way there. A further
+    pod is expected to wait for all of these pods."""
     late_weight: NotNegative = 0.02
-    """Weight of a second of lateness of an order, in seconds of travel."""
+    """Cost of a second of lateness of an order, in seconds of travel."""
     empty_battery_s: NotNegative = 0.0
-    """Additional travel time, in seconds, attributed to a robot with an empty battery; for other
-    robots, it is proportional to the missing charge. So robots with more energy are sent first."""
+    """Travel time, in seconds, that is added for a robot with an empty battery; for other robots,
+    the addition is proportional to the missing charge. Robots with more charge are therefore
+    preferred."""
 
 
 class DispatchControl(Asking[DispatchParameters]):
@@ -92,12 +95,12 @@ class DispatchControl(Asking[DispatchParameters]):
 
     There are two kinds of tasks: to take a carried pod to a station that it can serve, and to bring
     a pod from storage to a station with work. The number of tasks of the second kind at a station
-    is the least of three numbers: the robots without a pod, the open requests or waiting bundles of
-    the station, and the further robots that may come (`robots_per_station`). With `matching`, the
-    sum of travel time and weighted lateness of orders is minimised (linear assignment). With
-    `balance`, waiting behind other pods counts as well (minimum-cost flow). Tasks that are not
-    worth the trip are left out; a robot without a task stores its pod if it carries one, and
-    otherwise rests.
+    is the least of three numbers: that of robots without a pod, that of open requests or waiting
+    bundles of the station, and that of further robots that may come (`robots_per_station`). With
+    `matching`, the sum of travel time and weighted lateness of orders is minimised (linear
+    assignment). With `balance`, waiting behind other pods counts as well (minimum-cost flow). Tasks
+    that are not worth the trip are left out; a robot without a task stores its pod if it carries
+    one, and otherwise rests.
 
     As PPS chooses the pod only later, the time that a robot needs to bring a pod is estimated as
     the mean over all pods that the station could use. The delay that congestion is expected to

@@ -105,32 +105,35 @@ class RoutesParameters(TaskParameters, SearchParameters):
     """Parameters of TA routes."""
 
     method: Literal["lns", "cp_sat", "columns", "greedy"] = "lns"
-    """Solution method: `lns` (large neighbourhood search), CP-SAT (`cp_sat`) or column generation
-    (`columns`), both starting from cheapest insertion, or insertion alone (`greedy`)."""
+    """Solution method: `lns` (large neighbourhood search), `greedy` (cheapest insertion), or
+    `cp_sat` (CP-SAT) or `columns` (column generation), which start from the solution of
+    `greedy`."""
     steps: Annotated[int, pydantic.Field(ge=0)] = sequence.STEPS_PER_TASK
-    """Steps of `lns` for each task."""
+    """Number of search steps of `lns` per task in the problem."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.01
-    """Limit of `cp_sat` or `columns` in deterministic seconds, which are close to wall time;
-    `columns` needs 0.6 at large sites."""
+    """Limit of the search by `cp_sat` or `columns` in deterministic seconds, which are close to
+    wall time. At large sites, `columns` needs about 0.6."""
     gap: NotNegative = 0.01
-    """Relative gap between value and bound at which `cp_sat` or `columns` ends."""
+    """Relative gap between objective value and bound at which `cp_sat` or `columns` ends."""
     unit_value_s: NotNegative = 100.0
-    """Value of a unit picked, in seconds of a robot."""
+    """Value of picking a unit, in seconds of robot time."""
     order_value_s: NotNegative = 100.0
-    """Value of an order completed, in seconds of a robot."""
+    """Value of completing an order, in seconds of robot time."""
     bundle_value_s: NotNegative = 150.0
-    """Value of a bundle stored, in seconds of a robot."""
+    """Value of storing a bundle, in seconds of robot time."""
     late_weight: Annotated[int, pydantic.Field(ge=0)] = 3
-    """Weight of a second in which a station has no work, in seconds of driving."""
+    """Cost, in seconds of driving, of each second by which a pod arrives after its station has
+    finished the previous pods."""
     pods_per_station: Count = 2
-    """Number of pods considered for each station."""
+    """Maximum number of next pods considered for each station."""
     places_per_robot: Count = 6
-    """Number of empty places considered for each pod to be stored, the nearest to its station."""
+    """Number of empty storage locations considered for each carried pod: those nearest to the
+    robot."""
     places_per_task: Count = 3
-    """Number of empty places near each pod to be fetched that are considered for storing other
-    pods."""
+    """For each pod to be fetched, number of nearby empty storage locations at which robots may
+    store other pods first."""
     ways_per_pod: Count = 2
-    """Number of next tasks that CP-SAT considers after the storing of each pod."""
+    """Number of tasks that `cp_sat` considers as the next task after each pod has been stored."""
 
 
 class RoutesControl(Asking[RoutesParameters]):
@@ -140,12 +143,13 @@ class RoutesControl(Asking[RoutesParameters]):
     pod in service at a station. A task is to bring a pod to a station; for every station, there are
     tasks for the pods that it could best use next. The pod of a task is due when the station has
     finished the previous pods. The objective combines driving, lateness and the value of tasks left
-    undone. A pod is therefore stored where the trip to the place and on to the next pod is short,
-    which need not be the nearest place. A new plan is made whenever a robot needs a task.
+    undone. A pod is therefore stored at a storage location (place) for which the whole trip, to the
+    place and on to the next pod, is short; this need not be the nearest place. A new plan is made
+    when a robot needs a task, or when there is new work for robots at rest.
 
-    A pod whose station has more work for it stays there. The routes determine pods and places, so
-    PPS and PSA must be `dummy`. A robot with a pod but without a valid decision takes the pod to a
-    station that the pod can serve or, if there is none, to the nearest empty place.
+    A pod stays at its station while the station has work for it. The routes determine pods and
+    places, so PPS and PSA must be `dummy`. A robot with a pod but without a valid decision takes
+    the pod to a station that the pod can serve or, if there is none, to the nearest empty place.
     """
 
     parameters_model = RoutesParameters
