@@ -78,17 +78,18 @@ class LazyGroup(TyperGroup):
 def tell_defaults(command: Any) -> Any:
     """Add `[default: none]` to the help of each option without a default; return the command.
 
-    Help texts are shown as they are, since markup would hide what stands in brackets. Sub-commands
-    are included.
+    Defaults that a help text states itself are escaped, since its markup would hide them.
+    Sub-commands are included.
     """
-    command.rich_markup_mode = None
     for one in getattr(command, "commands", {}).values():
         tell_defaults(one)
     for parameter in command.params:
         told = getattr(parameter, "help", None) or ""
         is_option = parameter.param_type_name == "option" and not parameter.required
         if is_option and parameter.default is None and "[default:" not in told:
-            parameter.help = f"{told} [default: none]".lstrip()
+            told = f"{told} [default: none]".lstrip()
+        if "[default:" in told and "\\[default:" not in told:
+            parameter.help = told.replace("[default:", "\\[default:")
     return command
 
 

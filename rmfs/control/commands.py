@@ -71,7 +71,7 @@ def import_command(
         Path, typer.Argument(metavar="FILE", help="RAWSim-O controller configuration (.xconf).")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="The .toml file to write; default: NAME.toml.")
+        Path | None, typer.Option(help="The .toml file to write. [default: NAME.toml]")
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:

@@ -84,7 +84,7 @@ def list_layouts() -> None:
 def show(
     layout: LayoutArgument,
     out: Annotated[
-        Path | None, typer.Option(help="The .svg, .png or .pdf file to write; default: NAME.svg.")
+        Path | None, typer.Option(help="The .svg, .png or .pdf file to write. [default: NAME.svg]")
     ] = None,
     arrows: Annotated[bool, typer.Option("--arrows", help="Mark one-way edges by arrows.")] = False,
     settings: Settings = None,
@@ -135,7 +135,7 @@ def check_command(
 def import_command(
     path: Annotated[Path, typer.Argument(metavar="FILE", help="RAWSim-O .xinst or .xlayo file.")],
     out: Annotated[
-        Path | None, typer.Option(help="The file to write; default: NAME.json or NAME.toml.")
+        Path | None, typer.Option(help="The file to write. [default: NAME.json or NAME.toml]")
     ] = None,
     force: Force = False,
 ) -> None:
@@ -151,7 +151,7 @@ def import_command(
 def convert(
     layout: LayoutArgument,
     out: Annotated[
-        Path | None, typer.Option(help="The .json file to write; default: NAME.json.")
+        Path | None, typer.Option(help="The .json file to write. [default: NAME.json]")
     ] = None,
     settings: Settings = None,
     force: Force = False,

@@ -84,7 +84,7 @@ def check(scenario: Name, settings: Settings = None) -> None:
 def import_command(
     path: Annotated[Path, typer.Argument(metavar="FILE", help="RAWSim-O scenario (.xsett).")],
     out: Annotated[
-        Path | None, typer.Option(help="The .toml file to write; default: NAME.toml.")
+        Path | None, typer.Option(help="The .toml file to write. [default: NAME.toml]")
     ] = None,
     force: Force = False,
 ) -> None:

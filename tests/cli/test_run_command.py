@@ -226,6 +226,14 @@ def test_a_defect_keeps_its_traceback(calls, monkeypatch):
     assert files() == []
 
 
+def test_defaults_stated_in_help_texts_are_shown(capsys):
+    """The help is read as markup, in which brackets have a meaning."""
+    assert main(["run", "--help"]) == 0
+    shown = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert "[default: as fast as possible]" in shown
+    assert "[default: none]" in shown
+
+
 def test_every_option_tells_its_default():
     root = tell_defaults(typer.main.get_command(cli.app))
     lacking, seen = [], 0
