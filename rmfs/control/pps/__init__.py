@@ -33,7 +33,7 @@ _REACH: dict[Requests, int] = {
 class LateBinding(Parameters):
     """Parameters of all PPS rules.
 
-    Some values refer to the pools of stations; of the POA rules, only `queue` fills them.
+    Some values refer to the pools of stations. Only the POA rule `queue` puts orders into pools.
     """
 
     late_picks: bool = True

@@ -48,7 +48,7 @@ class Linear(Solo[LinearParameters]):
     parameters_model = LinearParameters
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield the task with the greatest sum among those that are possible."""
+        """Yield the possible task with the greatest weighted sum of features."""
         for kind, station in self._best_first(robot):
             if kind == WORK:
                 task = self._work(robot, station, consult)

@@ -95,7 +95,7 @@ class Demonstration:
 
 
 def expected(robots: dict[str, int], *, is_emulated: bool) -> list[str]:
-    """Return the names of all clients that may connect: robots and, if emulated, also the room."""
+    """Return the names of all clients that may connect: the robots, and an emulated room if any."""
     return [*robots, ROOM] if is_emulated else [*robots]
 
 

@@ -52,7 +52,7 @@ class Audit:
         return self.motion.ok and not any(chapter.faults for chapter in self.chapters)
 
     def summary(self) -> str:
-        """Return the result as text: for the motion and each chapter, `ok` or the first faults."""
+        """Return the result as text: `ok` or the first faults, for the motion and each chapter."""
         lines = [f"motion: {self.motion.summary(SHOWN)}"]
         for chapter in self.chapters:
             if not chapter.faults:

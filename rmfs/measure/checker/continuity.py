@@ -168,7 +168,7 @@ def _durations(layout: Layout, trace: Trace, limits: Kinematics, until_us: int) 
 
 
 def speeds(trace: Trace, limits: Kinematics) -> list[Finding]:
-    """Check that the top speeds of straight runs equal the limits, if the trace states them."""
+    """If the trace states the top speeds of straight runs, check that they equal the limits."""
     if trace.top_speed_m_s is None:
         return []
     off = np.where(trace.kind == Motion.RUN, trace.top_speed_m_s - limits.top_speed_m_s, 0.0)

@@ -1,8 +1,9 @@
 """The method for sites of realistic size: a heuristic decision, improved by CP-SAT, with a bound.
 
-Controllers use this method. Pod match (`greedy`) looks at all pairs; CP-SAT then re-optimises two
-stations at a time over the pairs that pruning keeps, within the limit `deterministic_s`. The bound
-is valid for the full input.
+Controllers use this method. It starts from the decision of the heuristic `greedy`, which considers
+all orders and pods. CP-SAT then re-optimises two stations at a time, within the limit
+`deterministic_s`. It considers only the candidates that are left after pruning (`candidates`), but
+the bound is valid for the full input.
 """
 
 from __future__ import annotations
