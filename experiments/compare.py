@@ -68,11 +68,11 @@ class Comparison:
     inputs
         Inputs that differ, with the columns `key`, `baseline` and `other`.
     outputs
-        One row per footprint column: `baseline` and `other` (means over the common seeds or, if
-        there are none, over all seeds), `difference` (`other` minus `baseline`) with the ends
-        `low` and `high` of its confidence interval, `relative` (difference divided by baseline),
-        and the p value `p`. The interval and `p` are nan if there are too few seeds: only one
-        common seed, or no common seed and a side with a single seed.
+        One row per footprint column. `baseline` and `other` are means over the common seeds or, if
+        there are none, over all seeds. `difference` is `other` minus `baseline`; `low` and `high`
+        are the ends of its confidence interval, and `p` is its p value. `relative` is the
+        difference divided by `baseline`. The interval and `p` are nan if there are too few seeds:
+        only one common seed, or no common seed and a side with a single seed.
     pairs
         Number of common seeds; if it is 0, the two samples were treated as independent.
     identical

@@ -32,7 +32,7 @@ def load(folder: str | Path, *, table: str = "footprint") -> pd.DataFrame:
 
     Returns
     -------
-    For `footprint`, one row per finished run, sorted by arm (in design order) and replication. Its
+    For `footprint`, one row per finished run, sorted by arm (in design order) and replication. The
     columns are `arm`, the factors, `stage`, `replication` (the seed as listed in the design), the
     footprint, `run` (a hash that identifies the run), and further columns on the origin of the
     run. Other tables start with the columns `arm`, the factors, `replication` and `seed`.

@@ -108,8 +108,8 @@ def anchored(reference: str, folder: Path | None = None) -> str:
     reference
         `path/to/file.py:Class`, `module:Class` or a plain name.
     folder
-        Folder in which the file is sought first. If it is not there, or no folder is given, the
-        path is relative to the working directory.
+        Folder in which the file is sought first. If the file is not there, or no folder is given,
+        the path is relative to the working directory.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def anchored(reference: str, folder: Path | None = None) -> str:
 
 
 def anchored_file(given: str, folder: Path) -> str:
-    """Return the absolute path of `given` if it is a file in a folder; otherwise return `given`."""
+    """Return the absolute path of `given` if `folder` contains this file; otherwise, `given`."""
     beside = folder / given
     try:
         return str(beside.absolute()) if beside.is_file() else given
@@ -198,7 +198,7 @@ def _remembered(found: type) -> str:
 
 
 def source_file(found: type) -> Path | None:
-    """Return the file that defines a class; None if none does, as for a class typed at a prompt."""
+    """Return the file that defines a class; None for a class typed at a prompt, for example."""
     try:
         return Path(inspect.getfile(found))
     except (OSError, TypeError):

@@ -114,8 +114,8 @@ class Step:
         Mean of the response, and half width of its confidence interval. The half width is nan
         except in a test.
     verdict
-        `above` or `below`, if the mean is above or below the target; `stands`, if the level passed
-        its test.
+        `stands` if the level passed its test; otherwise `above` or `below`, depending on whether
+        the mean is above or below the target.
     """
 
     phase: Literal["end", "search", "test"]

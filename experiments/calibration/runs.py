@@ -1,4 +1,4 @@
-"""The response of a calibration: a footprint column of runs that it simulates and stores."""
+"""The response of a calibration: simulates and stores runs, and returns a footprint column."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Designs: which runs an experiment consists of.
 
-`file` defines the contents of a design file, `arms` turns it into arms, `resolve` loads the inputs
-of an arm and computes their digest, `planning` combines everything and reports errors, and
-`stages` determines which runs are needed next.
+`file` defines the contents of a design file, `arms` makes the arms of a design, `resolve` loads the
+inputs of an arm and computes a digest of them, `planning` combines everything and reports errors,
+and `stages` determines which runs are needed next.
 """
 
 from rmfs.experiments.design.arms import Arm as Arm

@@ -391,7 +391,7 @@ def _arm_name(combination: tuple[Level, ...], keys: list[str]) -> str:
 
 
 def anchored(given: str, folder: Path) -> str:
-    """Return the path of a file in a folder if the file exists; otherwise, the text unchanged."""
+    """Return the path of the file `given` in `folder` if it exists; otherwise, `given` itself."""
     beside = folder / given
     try:
         return str(beside) if beside.is_file() else given

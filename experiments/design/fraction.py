@@ -4,11 +4,11 @@ Command: `python -m rmfs.experiments.design.fraction`.
 
 If the factors are the rules of several decision problems, the grid of all combinations has
 thousands of arms. For a screening, far fewer arms suffice to estimate the main effects, if the
-levels of the factors are well balanced among them. The arms are chosen such that the determinant of
-the information matrix of the main effects is large (D-optimality). The search starts from a random
-choice. In each step, it exchanges one chosen arm for another one, such that the determinant
-increases most; it ends when no exchange increases the determinant (Fedorov 1972). The result is
-written to a file, so that the arms of a study do not depend on the machine.
+levels of the factors are well balanced among these arms. The arms are chosen such that the
+determinant of the information matrix of the main effects is large (D-optimality). The search starts
+from a random choice. In each step, it exchanges one chosen arm for another one, such that the
+determinant increases most; it ends when no exchange increases the determinant (Fedorov 1972). The
+result is written to a file, so that the arms of a study do not depend on the machine.
 """
 
 from __future__ import annotations

@@ -92,7 +92,7 @@ class Plan:
         return factor_names(self.factors)
 
     def arm(self, name: str) -> Arm:
-        """Return the arm of this name.
+        """Return the arm with the given name.
 
         Raises
         ------
@@ -151,7 +151,7 @@ class Plan:
             raise PlanError(self.source, self.problems)
 
     def save(self, folder: Path) -> None:
-        """Write the plan to the folder of the results, which cannot be read without the plan."""
+        """Write the plan, which is needed to read results, to the folder of the results."""
         told = {
             "format": FORMAT,
             "hash": self.hash,

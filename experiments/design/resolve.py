@@ -154,7 +154,7 @@ _LOADERS: dict[str, Callable[..., Any]] = {
 
 
 def of_pacing(overrides: Overrides) -> Overrides:
-    """Return the overrides of parameters of the pacing."""
+    """Return those of the given overrides that set parameters of the pacing."""
     return [(path, value) for path, value in overrides if path[0] == "pacing"]
 
 

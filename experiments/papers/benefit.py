@@ -168,7 +168,7 @@ def publish_added(
     name: str,
     columns: Sequence[str] = (*RATES, *EFFORT),
 ) -> None:
-    """Publish the table of `of_optimiser` as NAME-optimiser, if there are arms with start rules."""
+    """Publish the table of `of_optimiser` as `name`-optimiser if an arm has a start rule."""
     if frame[CONTROLLERS].str.endswith(START).any():
         study.publish(of_optimiser(frame, groups, columns), f"{name}-optimiser", columns)
 

@@ -3,9 +3,9 @@
 The study simulates fleets of different sizes. It uses the design `charging` at the default site
 (layout `default`) or, with `--large`, the design `charging-large` at the large site (layout
 `large`). There are four cases: robots without batteries, plug-in chargers, swap stations, and queue
-waypoints that charge waiting robots. The study publishes units per hour, the number of robots
-needed for 95 % of the capacity of the pick stations (interpolated between fleets, seed by seed),
-and by how many percent this number exceeds the number needed without batteries.
+waypoints that charge waiting robots. The study publishes units per hour and the number of robots
+needed for 95 % of the capacity of the pick stations (interpolated between fleets, seed by seed). It
+also publishes by how many percent this number exceeds the number needed without batteries.
 
 With `--rules`, a single fleet size is simulated, with charge assignment (CA) by each of the rules
 and by the optimiser. The study then publishes differences from runs without batteries and from runs

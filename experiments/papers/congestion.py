@@ -1,11 +1,11 @@
 """The gain of decisions that consider where robots have recently been delayed.
 
-In the design `congestion`, PSA and TA (by linear assignment) decide with and without adding the
-delay expected from congestion to travel times. Two sites with quick stations are simulated, each
-with few robots and with so many that the aisles are full. The study publishes the changes of units
-per hour, of the delay per trip and of the distance per unit, paired by seed. It also publishes the
-share of trip time that is delay, which is an upper bound on what such decisions can save, and
-the share of time for which robots have no task.
+In the design `congestion`, PSA and TA (by linear assignment) decide by travel times that either
+include or ignore the delay expected from congestion. Two sites with quick stations are simulated,
+each with few robots and with so many that the aisles are full. The study publishes the changes of
+units per hour, of the delay per trip and of the distance per unit, paired by seed. It also
+publishes the share of trip time that is delay, which is an upper bound on what such decisions can
+save, and the share of time for which robots have no task.
 """
 
 from __future__ import annotations

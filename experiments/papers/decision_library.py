@@ -4,9 +4,9 @@ A question asks an optimiser to take one decision; questions of the same kind fo
 decisions). The study publishes, by family and size of the questions, how many best known values are
 proven optimal, and how far the answers given in runs are from the best known values. It also
 compares solution methods, based on the times in `decision-times.csv`. With `--time`, these times
-are first measured: every method answers some questions of each family under several limits of
-work, as in `rmfs decisions profile`. Only the families in `TIMED` are timed; in the other families,
-all best known values are proven optimal.
+are first measured: for each family in `TIMED`, every method answers some questions under several
+limits of work, as in `rmfs decisions profile`. The other families are not timed, because all their
+best known values are proven optimal.
 """
 
 from __future__ import annotations

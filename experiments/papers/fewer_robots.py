@@ -3,9 +3,11 @@
 The study runs fleets of different sizes at the small site (the shipped layout `small`), with a
 backlog, and measures the first hour. It shows units per hour and their proven bound by fleet size,
 and the smallest fleet with which each controller reaches 95 % of the capacity of the pick stations.
-A small fleet initially picks stock that it has no time to replenish. With `--later`, the third hour
-is therefore measured instead; further runs measure the first hour with orders that arrive over time
-instead of a backlog. The study takes about 0.3 CPU hours, with or without `--later`.
+The study takes about 0.3 CPU hours, with or without `--later`.
+
+A small fleet initially picks stock that it has no time to replenish. Therefore, `--later` uses
+other runs: some measure the third hour with a backlog, the others the first hour with orders that
+arrive over time.
 """
 
 from __future__ import annotations

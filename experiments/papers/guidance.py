@@ -1,4 +1,4 @@
-"""The gain of guidance, that is, of extra costs of edges that make planners prefer certain paths.
+"""The gain of guidance, which adds costs to edges so that planners prefer certain paths.
 
 The design `guidance` simulates sites with quick stations at normal and at high density of robots,
 without guidance and with several guidance files. The study publishes the changes of units per hour,
@@ -8,7 +8,7 @@ delay (guidance cannot save more than this) and the share of time for which robo
 (during which shorter trips would gain nothing).
 
 The same layouts, robots and guidance are also simulated with random trips instead of orders, so
-that every robot always has a trip. Of these simulations, the study publishes the change of trips
+that every robot always has a trip. For these simulations, the study publishes the change of trips
 per hour.
 """
 

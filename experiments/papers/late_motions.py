@@ -2,10 +2,10 @@
 
 In the design `late-motions`, robots at the default site (layout `default`) begin some of their
 motions late. Each motion is late with a probability of 0.0005, 0.005 or 0.02. Late motions begin
-either 1 to 10 s or 10 to 200 s late. These values span the range of published benchmarks, if a time
-unit is one second. In this study, lateness is the time by which motions begin late; under perfect
-execution, no motion begins late. With repair, robots that have to wait for a late robot get new
-plans; each combination is run with and without repair.
+either 1 to 10 s or 10 to 200 s late. These values span the range of published benchmarks, if one of
+their time units is taken as one second. In this study, lateness is the time by which motions begin
+late; under perfect execution, no motion begins late. With repair, robots that have to wait for a
+late robot get new plans; each combination is run with and without repair.
 
 The study publishes the change of units per hour compared with perfect execution, and the effect of
 repair, both paired by seed. A figure shows units per hour over the lateness per robot and hour.
@@ -41,7 +41,7 @@ def wide(frame: pd.DataFrame, robots: int, column: str = "units_per_h") -> pd.Da
 
 
 def losses(frame: pd.DataFrame) -> Table:
-    """Return units per hour, their change in percent, total lateness, and repaired plans.
+    """Return units per hour, their change in percent, total lateness, and number of repairs.
 
     The table has one row per fleet and level of `late`. The change is relative to perfect
     execution; it is negative if fewer units are picked.

@@ -62,7 +62,7 @@ def is_linear(policy: str) -> bool:
 def best_rule(runs: pd.DataFrame, goal: str, among: Callable[[str], bool] = is_rule) -> str:
     """Return the plain rule with the best mean in a regime: most units, or fewest late orders.
 
-    The rule is selected by the same runs that are then used for comparisons, which favours it.
+    The comparisons favour this rule, because it is selected from the same runs.
 
     Parameters
     ----------

@@ -115,7 +115,7 @@ def offline_gaps(library: Library, arm: str, size: str) -> list[float]:
 
 
 def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
-    """Return a question with changed settings; of nested tables, only given keys are changed.
+    """Return a question with changed settings; in nested tables, only given keys are changed.
 
     Parameters
     ----------

@@ -1,14 +1,15 @@
 """The balance of work among pickers, and its cost.
 
 At the small site (layout `small`), orders arrive over time, and two pickers differ in speed and get
-tired. The study publishes means of all arms, and the differences, paired by seed, of
+tired. The study publishes means of all arms, and differences, paired by seed:
 
-- POA `workload`, which balances open orders over the stations, from the default rule `pod-match`;
-- SA `staffed`, which lets tired pickers rest, from stations that are always active, both with POA
+- POA `workload`, which balances open orders over the stations, compared with the default rule
   `pod-match`;
+- SA `staffed`, which lets tired pickers rest, compared with stations that are always active, both
+  with POA `pod-match`;
 - POA `picker-load`, which considers the speed and, in a second arm, also the fatigue of pickers,
-  from POA `workload`;
-- optimisers with balance in their objective from the same optimisers without it.
+  compared with POA `workload`;
+- optimisers with balance in their objective, compared with the same optimisers without balance.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ def losses(frame: pd.DataFrame) -> Table:
 
 
 def seconds(planning: str) -> float:
-    """Return the constant time per plan given in the label of a level, in s; nan if none is."""
+    """Return the constant time per plan, in s, from the label of a level; nan if it has none."""
     number, _, rest = planning.removesuffix(", each").partition(" ")
     return float(number) if rest == "s" else nan
 
@@ -91,7 +91,8 @@ def begins(frame: pd.DataFrame, fleet: str, *, each: bool) -> tuple[float, float
     Parameters
     ----------
     each
-        Whether to consider the levels at which each robot has a separate planner.
+        Whether to consider only levels with a separate planner for each robot, instead of only
+        levels with one planner for all robots.
     """
     found = changes(frame, fleet)
     levels = sorted(

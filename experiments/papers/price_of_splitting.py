@@ -129,8 +129,8 @@ def break_even_slots(runs: pd.DataFrame, way_s: float) -> tuple[float, float, fl
     runs
         Runs with one kind of demand.
     way_s
-        Time to the wall, in s; only walls with this time are considered, and the wall with
-        unlimited slots. As that wall is never full, the time to it does not affect units per hour.
+        Time to the wall, in s. Walls with this time and the wall with unlimited slots are
+        considered. The latter is never full, so the time to it does not affect units per hour.
 
     Returns
     -------

@@ -156,7 +156,7 @@ def done(
     Parameters
     ----------
     given
-        Options of `parser`.
+        Options parsed with a parser that `parser` returned.
     layout
         Layout to use instead of the design's; ignored if the option `--reference` is given.
     more

@@ -97,7 +97,7 @@ class DaskWorkers:
         return 2 * max(1, sum(threads))
 
     def submit(self, job: Job) -> None:
-        """Submit a job to a worker; if the worker dies, Dask submits it to another."""
+        """Submit a job to a worker; if the worker dies, Dask submits the job to another."""
         with self._scheduler_there():
             future = self.client.submit(_work_of(self._work), job, pure=False)
         self._jobs[future] = job

@@ -96,7 +96,7 @@ def row(run: TripRun) -> dict[str, float]:
 
 
 def table(rows: dict[str, dict[str, float]], *, index: str = "planner") -> pd.DataFrame:
-    """Return the rows of all planners as a frame; `rows` contains them by name of the planner."""
+    """Return the rows of all planners as a frame; the keys of `rows` are names of planners."""
     frame = pd.DataFrame.from_dict(rows, orient="index")
     frame.index.name = index
     return frame

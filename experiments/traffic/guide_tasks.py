@@ -68,7 +68,7 @@ class Task(ABC):
         return layouts.load(self.layout, own)
 
     def other_seeds(self) -> list[int]:
-        """Return other seeds, twice as many as `seeds`: the numbers after the greatest of them."""
+        """Return the integers after the largest of `seeds`, twice as many as there are seeds."""
         return [max(self.seeds) + 1 + number for number in range(2 * len(self.seeds))]
 
     @abstractmethod

@@ -78,8 +78,8 @@ class LazyGroup(TyperGroup):
 def tell_defaults(command: Any) -> Any:
     """Add `[default: none]` to the help of each option without a default; return the command.
 
-    Defaults that a help text states itself are escaped, since its markup would hide them.
-    Sub-commands are included.
+    In a help text, `[default: ...]` is escaped, because it would otherwise be read as markup and
+    not be shown. Sub-commands are included.
     """
     for one in getattr(command, "commands", {}).values():
         tell_defaults(one)

@@ -188,8 +188,8 @@ class Call:
     failure
         Reason for a failure, in one line.
     applied, stale
-        Number of decisions of the solution that were applied, and number of those that were not
-        because they had become invalid.
+        Number of decisions of the solution that were applied, and number of those that were left
+        out because they had become invalid.
     fallback
         Number of decisions made by the controller's own rule because the call failed or found
         nothing.
@@ -237,7 +237,7 @@ class Call:
         name
             Name of this group of parts within the answer.
         parts
-            All parts of the group, the same each time the method is called for it.
+            All parts of the group, the same each time the method is called for this group.
         """
         while (number := self.done.get(name, 0)) < len(parts):
             self.done[name] = number + 1

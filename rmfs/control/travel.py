@@ -24,8 +24,8 @@ Metric = Literal["euclidean", "manhattan", "path", "time"]
 class TravelTimes(Protocol):
     """The part of the traffic model that `Travel` needs.
 
-    Travel times depend on the kind of robot: those of the kind of robot number `robot` (default: 0)
-    are returned.
+    Travel times depend on the kind of robot; the returned times are those of the kind to which
+    robot number `robot` (default: 0) belongs.
     """
 
     def travel_times_to(self, waypoint: int, loaded: bool, robot: int = ...) -> NDArray[np.float64]:
@@ -54,7 +54,7 @@ class TravelTimes(Protocol):
 class TravelTables:
     """Cached travel times and distances.
 
-    A run shares them with the copies of the run in which decisions are tried out.
+    If a run is copied in order to try out decisions, the run and its copies share these values.
 
     Attributes
     ----------
@@ -274,7 +274,7 @@ class Travel:
 
         Both arrays have shape (N,); the times are in s and include service at stations. Times of
         robots without a destination, and times for lifting and setting down pods, are left out.
-        Counts start at time zero, and again from 0 at the end of the warm-up.
+        Counting starts at time zero; all values are reset to 0 at the end of the warm-up.
         """
         counted = self._times.heat()
         return counted["visits"], counted["waiting_s"]

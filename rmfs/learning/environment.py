@@ -42,9 +42,9 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     be answered by several decisions, one per step, until the agent declines.
 
     If only one of the actions 0 to k is possible, the environment carries it out without asking
-    the agent. There is one exception: with `rule`, the agent is also asked if there are no
-    candidates but the rule has an answer. An impossible action sets `info["invalid"]`; it counts as
-    action k if declining is possible, and otherwise as action 0.
+    the agent. There is one exception: with `rule`, the agent decides even if there are no
+    candidates, provided that the rule has an answer. An impossible action sets `info["invalid"]`;
+    it counts as action k if declining is possible, and otherwise as action 0.
 
     An observation is a dictionary of the arrays `global`, shape (G,), `candidates`, shape (k, F),
     and `action_mask`, which has one element per action. If the parameter `observation` is `flat`,
@@ -204,8 +204,8 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     def advised(self) -> int:
         """Return the action that agrees with the installed rule; requires `rule`.
 
-        If the rule's answer is one of the candidates offered, this is the action that chooses the
-        candidate. If the rule declines, it is action k; otherwise, it is action k + 1.
+        This action chooses a candidate if the rule's answer is among the candidates offered. It is
+        action k if the rule declines, and action k + 1 in all other cases.
         """
         options = self._options
         if options is None or not self._with_rule:

@@ -50,8 +50,8 @@ def train_network(
     steps
         Number of decisions; rounded up to a multiple of 2048.
     hidden
-        Number of units in the hidden layer of each network. Networks that have layers already keep
-        them.
+        Number of units in the hidden layer of each network. A network that already has layers
+        keeps these.
     candidates
         Maximum number of candidates that are scored for a question.
     gamma
@@ -62,9 +62,9 @@ def train_network(
         Number of times that the rules are simulated during training; fewer if `steps` is less than
         2048 times this number.
     average
-        Whether to subtract from each reward the mean reward per second times the seconds since the
-        last decision. Otherwise, PPO maximises the reward per decision rather than per second,
-        because it discounts by decision.
+        Whether to subtract from each reward the product of the mean reward per second and the time
+        since the last decision. Without this, PPO maximises the reward per decision rather than per
+        second, because it discounts by decision.
     seed
         Seed of the initial weights and of PPO.
     told

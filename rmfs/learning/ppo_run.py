@@ -107,7 +107,7 @@ class Rate:
         self._reward, self._time_s = 0.0, 0.0
 
     def less_mean(self, reward: float, elapsed_s: float) -> float:
-        """Include a reward in the mean; return the reward minus elapsed time times mean."""
+        """Include a reward in the mean; return the reward minus mean x elapsed time."""
         kept = exp(-elapsed_s / self.MEMORY_S)
         self._reward = kept * self._reward + reward
         self._time_s = kept * self._time_s + elapsed_s

@@ -212,7 +212,7 @@ def reward_of(wanted: Wanted) -> Reward:
     Raises
     ------
     InputError
-        If a reward does not exist, or if `wanted` names no reward.
+        If a reward does not exist, or if `wanted` is empty.
     """
     if isinstance(wanted, (str, type)):
         return _one(wanted)

@@ -34,10 +34,10 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
 
     `info` contains the arrays `elapsed_s`, `now_s`, `invalid` and `kind`, each of shape (N,), and
     `action_mask`, shape (N, actions). The elements of `kind` are kinds of question (see the
-    attribute `kinds`): each is the kind of the environment's next question, or empty at the end of
-    an episode. If episodes have just ended and runs are measured, `info` also contains the array
-    `footprint`, shape (N,), with the footprints of the ended runs; the mask `_footprint` is true
-    for their environments.
+    attribute `kinds`); each element is the kind of the environment's next question, or empty at the
+    end of an episode. If episodes have just ended and runs are measured, `info` also contains the
+    array `footprint`, shape (N,), with the footprints of the ended runs; the mask `_footprint` is
+    true for the environments of these runs.
 
     `reset(seed=s)` gives environment i the seed s + i. Each environment then behaves like a single
     `DecisionEnv` with its seed.
@@ -107,7 +107,7 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Carry out an action in every environment, or start its next episode if the last ended."""
+        """Carry out an action in every environment; where an episode has ended, start the next."""
         board = self._board.arrays
         board["action"][:] = actions
         for pipe in self._pipes:

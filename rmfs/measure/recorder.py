@@ -331,7 +331,7 @@ class Recorder(Observer):
     def optimiser_answered(self, call: Call) -> None:
         """Record the solution, if there is one.
 
-        How many of the proposed decisions are applied is counted in `call`.
+        The object `call` counts how many of the proposed decisions are applied.
         """
         if call.solution is not None:
             self.solutions[call.number] = to_text(call.solution)

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class PriorityDue(Block):
-    """Orders are urgent or ordinary; all orders of a kind have the same offset."""
+    """Orders are urgent or ordinary; each of these two kinds has its own constant offset."""
 
     mode: Literal["priority"] = "priority"
     urgent_share: Share = Field(0.2, description="share of orders that are urgent")

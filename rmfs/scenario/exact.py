@@ -1,8 +1,8 @@
 """Numbers that are equal on every processor.
 
 Sums, products, quotients and square roots are rounded the same way everywhere; logarithms, error
-functions and their inverses may differ in the last bits. The popularities and spaces of SKUs may be
-computed with the latter, so both are rounded here to far fewer digits before they are used.
+functions and their inverses may differ in the last bits. As popularities and spaces of SKUs may be
+computed with such functions, this module rounds them to far fewer digits before they are used.
 """
 
 from __future__ import annotations

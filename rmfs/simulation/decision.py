@@ -92,7 +92,7 @@ class Decision:
 
     @property
     def stations(self) -> tuple[int, ...]:
-        """The station that needs a pod, or the possible next stations; otherwise empty."""
+        """The station that needs a pod, or the possible next stations; empty in other cases."""
         return self._question.stations
 
     @property

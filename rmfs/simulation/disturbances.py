@@ -154,7 +154,7 @@ class DisturbanceSource:
             self._agenda.after(round(begin_s * 1e6), stop)
 
     def redraw(self) -> None:
-        """Draw the next disturbance of each random kind anew, and all future late motions.
+        """Redraw the next disturbance of each random kind, and all future late motions.
 
         Disturbances in progress continue, and outages of elevators keep their times.
         """

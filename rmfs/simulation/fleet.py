@@ -1,4 +1,4 @@
-"""The interface by which `Dispatch` drives robots: the methods of `Traffic` that it needs."""
+"""The interface by which `Dispatch` drives robots: those methods of `Traffic` that it calls."""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ class LateBinding(Observer):
                 self._bind_queued(task, queued.values(), late_bound=False)
 
     def bind(self) -> None:
-        """Add work that has become available since the last call of this method to tasks."""
+        """Add to tasks the work that has become available since the last call of this method."""
         given = self._controllers[Problem.PPS].parameters
         if given.late_bundles:
             for bundle in self._bundles:

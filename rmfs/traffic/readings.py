@@ -88,8 +88,8 @@ class Readings:
         The columns are `robot`, `kind` (`TripKind`), `t0_us`, `t1_us`, `from_wp`, `to_wp`,
         `loaded`, `distance_m`, `unhindered_s` (lower bound of the duration), `energy_j` (0 if
         energy is not counted) and `awaited_s` (how long the robot waited for its plan at the
-        beginning). A trip to a station is finished when the robot reaches the station, and its
-        distance and energy include the queue; but `t1_us` is the time at which the robot entered
+        beginning). A trip to a station is finished when the robot reaches the station. Its distance
+        and energy include the part in the queue; but `t1_us` is the time at which the robot entered
         the queue zone, and `unhindered_s` refers to the path up to this zone.
         """
         return self._core.trips()
@@ -111,8 +111,8 @@ class Readings:
         """Follow a run: return the part of the trace that previous calls have not returned.
 
         The motion that each robot is currently executing is included, and is returned again until
-        it has ended. A row therefore replaces all motion of the same robot after the row's `t0_us`
-        that earlier calls returned. If a robot stands still during several calls, it gets several
+        it has ended. A row therefore replaces what earlier calls returned for the same robot and
+        times after the row's `t0_us`. If a robot stands still during several calls, it gets several
         consecutive rows, which `joined_holds` merges.
 
         Parameters

@@ -46,8 +46,8 @@ class Traffic(Readings):
         A second argument can leave out kinds of events: an integer whose bit k is set if events of
         `EventKind(k)` are not wanted.
     command
-        Function of a robot and a program, which it gives to the robot. A program is a list of pairs
-        of a `Step` and its argument.
+        Function that gives a program to a robot; its arguments are the robot and the program. The
+        program is a list of pairs of a `Step` and its argument.
 
     Raises
     ------
@@ -206,8 +206,9 @@ class Traffic(Readings):
     def clearance(self, robot: int) -> list[int]:
         """Return the waypoints ahead of a robot to which it may drive now.
 
-        They belong to its present straight run or, if it stands, to its next one, and are in the
-        order in which it reaches them. All robots that were to use them earlier have left them.
+        The waypoints belong to the robot's present straight run or, if the robot stands, to its
+        next one, and are in the order of this run. All robots that were to use these waypoints
+        earlier have left them.
         """
         return self._core.clearance(robot)
 
@@ -262,9 +263,9 @@ class Traffic(Readings):
             Shortest and longest delay in microseconds, uniformly distributed.
         repair
             Whether to replan each robot that has to wait for a late robot for more than a second.
-            It is replanned alone or, if this does not help, together with the late robot and before
-            it. New plans are kept only if they decrease the sum of arrival times. With rolling
-            planners, `repair` has no effect.
+            The waiting robot is replanned alone or, if this does not help, together with the late
+            robot, which is then planned second. New plans are kept only if they decrease the sum of
+            arrival times. With rolling planners, `repair` has no effect.
         seed
             Seed of the draws, below 2^64.
 
@@ -292,8 +293,8 @@ class Traffic(Readings):
         """Let plans of trips take time from now on; a robot departs when its plan is ready.
 
         Only for planners per leg, which plan trip by trip. A plan is made around the reservations
-        that exist when planning begins. Its departure is not before the end of the planning time,
-        but its route is reserved as soon as planning begins.
+        that exist when planning begins. The robot departs no earlier than the end of the planning
+        time, but its route is reserved as soon as planning begins.
 
         Parameters
         ----------
@@ -316,7 +317,7 @@ class Traffic(Readings):
         Raises
         ------
         ValueError
-            If a time is negative, or there is no such price; then nothing is changed.
+            If a time is negative, or `price` is unknown; then nothing is changed.
         """
         self._core.set_pace(price, numbers, list(tape), period_us, lazy, each)
 

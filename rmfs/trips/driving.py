@@ -91,7 +91,7 @@ def drive(
     Parameters
     ----------
     duration_s, warmup_s
-        Simulated time that is measured, and that of the warm-up before it, in s.
+        Measured simulated time, and simulated time of the warm-up before it, in s.
     proven
         Whether the independent checker should prove the motion safe. If so, the trace is recorded.
     stall_s

@@ -154,7 +154,7 @@ class PointTrips:
     goals
         For each robot, the waypoints to which it drives, in order.
     shared
-        Goals for robots that have reached all their own goals, assigned in this order.
+        Further goals, given in this order to robots that have reached all their own goals.
     """
 
     def __init__(self, goals: Sequence[Iterable[int]], shared: Iterable[int] = ()) -> None:

@@ -181,7 +181,7 @@ class Inventory:
         self._wanted[sku] -= units
 
     def commit(self, sku: int, units: int) -> None:
-        """Subtract units from `free_stock`; a negative number of units is added.
+        """Subtract units from `free_stock`, or add them if their number is negative.
 
         The open units of an order are subtracted when the order is assigned to a station. Units
         bound to a pod earlier, while the order is in a station's pool, are subtracted when they are
@@ -195,7 +195,7 @@ class Inventory:
         Raises
         ------
         ValueError
-            If fewer units of the SKU are available on the pod.
+            If the pod has too few available units of the SKU.
         """
         left = self._available[sku, pod] - units
         if left < 0:

@@ -19,8 +19,8 @@ _HAIR = 1e-9
 class PodParts:
     """The parts in which the units of each pod lie.
 
-    Each part has an equal share of the pod's capacity. If no part has room for a unit, although
-    the pod as a whole has, the unit goes to the part with the most room.
+    Each part has an equal share of the pod's capacity. A unit that fits into no single part goes to
+    the part with the most room.
 
     Parameters
     ----------

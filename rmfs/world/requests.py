@@ -84,7 +84,7 @@ class OpenRequests:
         self._count_from(before)
 
     def reopen(self, line: OrderLine) -> None:
-        """Reopen one request of a line; put the line first in `lines` if it had none open."""
+        """Reopen a request of a line; a line without open requests becomes the first in `lines`."""
         if not line.open_units:
             self.lines.setdefault(line.sku, deque()).appendleft(line)
         line.open_units += 1

@@ -154,7 +154,7 @@ class PickTask(StationTask):
     picks: deque[Pick] = field(default_factory=deque)
 
     def started(self, world: Keeps) -> Task:
-        """Claim the pod, and bind to it open requests of the station's orders.
+        """Claim the pod, and bind open requests of the station's orders to it.
 
         As many requests are bound as the pod's available stock can serve.
         """

@@ -27,10 +27,11 @@ class Buffer:
         self._wanted = False
 
     def is_over(self, wanted: bool = True) -> bool:
-        """Return whether to ask the optimiser now: if `wanted` is true and the buffer time is over.
+        """Return whether to ask the optimiser now.
 
-        If `wanted` is true but the buffer time is not over, the call also sets `next_event_s` to
-        the end of the buffer time.
+        The result is true if `wanted` is true and the buffer time is over. If `wanted` is true but
+        the buffer time is not over, the call also sets `next_event_s` to the end of the buffer
+        time.
 
         Parameters
         ----------

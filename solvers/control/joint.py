@@ -43,10 +43,10 @@ class JointAllocation(TaskAllocation[P]):
         self._rest = RestPlaces(view, rest, self.draw)
 
     def is_modelled(self, decision: Any) -> bool:
-        """Whether the model makes decisions of this kind.
+        """Whether a decision is of a kind that the model makes.
 
-        Such decisions assign an order or its lines to a pick station, or send a robot without a pod
-        to fetch one for picks.
+        The model assigns orders or their lines to pick stations, and sends robots without a pod to
+        fetch pods for picks.
         """
         if isinstance(decision, BringForPicks):
             return decision.robot.pod < 0

@@ -5,10 +5,11 @@ an order share a slot, just one. The number of totes is known only when the last
 so each line without a station counts as a separate tote. If no other limit is given, the wall
 therefore always has room for the totes of split orders, and never blocks a pick station.
 
-If the number of split orders is limited, each order is ranked by the number of its lines that pods
-under way to one station can serve, divided by the number of slots of the wall that the order needs.
-An order is left out if these pods can serve it completely, as it need not be split, or if they can
-serve none of its lines, as it would not benefit from being split now.
+If the number of split orders is limited, orders are ranked by a ratio: the largest number of lines
+of the order that the pods under way to a single station can serve, divided by the number of slots
+of the wall that the order needs. An order is left out if the pods under way to one station can
+serve all its lines, as it need not be split. It is also left out if no pods under way to any
+station can serve any of its lines, as it would not benefit from being split now.
 """
 
 from __future__ import annotations
@@ -76,9 +77,9 @@ class Splitting:
         return self._is_settled(order) or (self._orders >= 1 and self._slots >= self._need(order))
 
     def offers(self) -> Callable[[Order], bool]:
-        """Choose the orders that may be split now; return a function that tests for these orders.
+        """Choose the orders that may be split now; return a function that is true for them.
 
-        The test is also true for orders that are already split, or have a single line.
+        The function is also true for orders that are already split, or have a single line.
         """
         if self._orders == self._slots == inf:
             return lambda order: self._is_settled(order) or self._is_worth_it(order)

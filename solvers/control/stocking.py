@@ -50,8 +50,8 @@ class Question:
     Attributes
     ----------
     method
-        `greedy` (the greedy rule), `rounding`, or `cp_sat` or `highs`, which both start from the
-        solution of the greedy rule.
+        `greedy`, `rounding`, `cp_sat` or `highs`. The latter two start from the solution of
+        `greedy`.
     """
 
     data: Replenishment
@@ -97,7 +97,7 @@ class StockingParameters(SearchParameters):
 
 
 class StockingControl(ReplenishmentPodSelection[StockingParameters]):
-    """Decides jointly in which pods bundles are stored, and at which replenishment stations.
+    """Chooses pods for bundles, and replenishment stations for these pods, by one model.
 
     The ROA controller must be `dummy`. The value of storing a bundle in a pod is the robot time
     that the bundle's units will save by raising the pile-on. This value is high if the bundle's SKU

@@ -89,7 +89,7 @@ def best(
 ) -> tuple[str, float]:
     """Return the name of the method with the best bound, and this bound.
 
-    If no method finds a bound, these are "" and nan.
+    If no method finds a bound, the name is "" and the bound is nan.
 
     Parameters
     ----------

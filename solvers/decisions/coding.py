@@ -3,8 +3,8 @@
 Integers stay integers. Other numbers are written with the fewest digits that read back as the same
 double (Python's `repr`), and as `"inf"` or `"-inf"` if they are infinite. A large array with mostly
 equal entries, or one without rows, is written as `{"shape": [...], "all": V, "at": [...], "values":
-[...]}`: all entries are V, except those at the positions `at`, counted row by row, which are given
-in `values`.
+[...]}`. The entries at the positions `at` are given in `values`, and all others are V. Positions
+are counted row by row.
 """
 
 from __future__ import annotations

@@ -163,7 +163,7 @@ slots         | whole | S   | order slots, 1 or more
 coming        | whole | F   | pods under way; pods to the same station in order of arrival
 coming_to     | whole | F   | station of each pod under way
 order_station | whole | O   | station at which an order is open, or -1 if the order waits
-order_until   | whole | O   | position of the last visit under way with units for an order, or -1
+order_until   | whole | O   | last position at which a pod under way has units for an order, or -1
 order_worth   | real  | O   | value of completing an order, s of robot time
 line_order    | whole | L   | order of each line
 line_sku      | whole | L   | SKU of each line

@@ -41,17 +41,17 @@ HEAD = """\
 Times are milliseconds of wall time in runs of a large warehouse: 1,965 pods, 128 robots, 20 pick
 and 12 replenishment stations, 1,000 SKUs, a constant backlog of 200 orders and 200 bundles. Each
 rule is measured in a run of its own, of five simulated minutes. The other problems are decided by
-their default rules, except where the measured rule needs other rules or its row names them.
+their default rules, unless the measured rule needs other rules or its row names other rules.
 
-In a *call*, a controller is asked once; it makes one decision, several or none. The column *median,
-decision* shows the median of the time per decision: the time of a call divided by the number of its
-decisions. For this column, calls without decisions are left out; if the rule made no decision at
-all, every call counts. The other columns are the mean, the 95 % quantile and the maximum of the
-times of all calls. If a controller asks other controllers during its call, their time is not
-included. Rows such as *only age* stand for PPS `lexicographic` with this criterion alone; ties are
-broken at random. In the row *all pooled orders count*, PPS considers all orders in the pools of POA
-`queue`, not only those that a pod completes. This page is written by
-`python -m tests.tools.decision_times`.
+In a *call*, a controller is asked once; it makes one decision, several or none. The column
+*median, decision* shows the median of the time per decision: the time of a call divided by the
+number of its decisions. For this column, calls without decisions are left out; if the rule made
+no decision at all, every call counts. The other columns are the mean, the 95 % quantile and the
+maximum of the times of all calls. If a controller asks other controllers during its call, their
+time is not included. Rows such as *only age* stand for PPS `lexicographic` with only the
+criterion named; ties are broken at random. In the row *all pooled orders count*, PPS considers
+all orders in the pools of POA `queue`, not only the orders that a single pod can complete. This
+page is written by `python -m tests.tools.decision_times`.
 
 For every rule, the median should stay below one millisecond. The benchmarks
 (`pytest -m benchmark tests/control`), which time a single decision repeatedly, have the same limit.

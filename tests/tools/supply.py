@@ -285,8 +285,9 @@ compares the locked versions with stored advisories; this needs no network.
 
 Packages are installed separately, with two exceptions. The Rust crates are linked into the compiled
 core (path planning and other fast parts). The JavaScript packages three.js and uPlot are contained
-in the page of the [viewer](viewer.md). Their licences are in `rmfs/view/static/notices.txt`, which
-is part of the wheel, and at the top of the page's script, so exported pages contain them as well.
+in the page of the [viewer](viewer.md). The licences of these two packages are in
+`rmfs/view/static/notices.txt`, which is part of the wheel, and at the top of the page's script, so
+exported pages contain these licences as well.
 
 The last column states what a package is needed for: the compiled core, the page of the viewer,
 every installation at run time, or only optional extras and development. If a Python package is

@@ -71,10 +71,11 @@ class Contest:
         return [at_row[row] for row in self.rows.tolist()]
 
     def claimed(self) -> NDArray[np.int32]:
-        """Return, for each of the K SKUs, how many units other orders need first, shape (K,).
+        """Return how many units of each of the K SKUs are claimed by other orders, shape (K,).
 
-        These other orders are those with a slot at the station and, if the contest is for the pool,
-        also those already in the pool. Only units that are not yet bound to a pod count.
+        The other orders, which have precedence, are those with a slot at the station and, if the
+        contest is for the pool, those already in the pool. Only units that are not yet bound to a
+        pod count.
         """
         claimed: NDArray[np.int32] = self.view.need[self.station.index]
         if self.for_pool:

@@ -45,8 +45,8 @@ class _Visit:
 class FastLane:
     """Assigns orders of the backlog to stations whose current pod can complete them.
 
-    Stations are considered by ascending number, and orders by ascending `rank`. Units that orders
-    already at the station need from the pod are not available to other orders.
+    Stations are considered by ascending number, and orders by ascending `rank`. Units of the
+    pod that are needed by orders already at the station are not available to other orders.
 
     Parameters
     ----------
@@ -84,8 +84,8 @@ class FastLane:
     def promising(self) -> list[int]:
         """Return the stations with a free slot whose pod may complete an order, lowest first.
 
-        Only stations that have changed since the last call are checked; if there are new orders,
-        all stations with a free slot are.
+        If there are new orders since the last call, all stations with a free slot are checked;
+        otherwise, only those that have changed.
         """
         newest = next(reversed(self._view.orders.orders), -1)
         changed, serving = self._news.take(), self._serving

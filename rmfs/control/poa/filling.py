@@ -42,8 +42,8 @@ class Filling(PickOrderAssignment[P]):
     """Assigns orders to free slots, one after another.
 
     If the rule has a fast lane, orders for it come first, and one slot is reserved for it at each
-    station with more than one slot. An order counts as one that stock can serve if the pods have
-    all its units available in addition to those that orders at stations need.
+    station with more than one slot. Stock can serve an order if, apart from the units that orders
+    at stations need, enough units of each of the order's SKUs are available on the pods.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
     """Return how many units of each backlog order the pods of each station can supply, (S, B).
 
-    The pods of a station are those at the station and those on their way to it. Of their available
-    units, as many as the station's open orders still need are not counted.
+    The pods of a station are those at the station and those on their way to it. Available units
+    that the station's open orders still need are not counted.
     """
     sku, units = view.orders.sku, view.orders.units
     found = np.empty((len(stations), len(sku)), np.int32)

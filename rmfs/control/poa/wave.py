@@ -1,4 +1,4 @@
-"""POA wave: assigns orders by due time; orders due together, by how well they match the pods."""
+"""POA wave: assigns orders in waves by due time; in a wave, the best matches with pods first."""
 
 from __future__ import annotations
 

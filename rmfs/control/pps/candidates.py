@@ -53,10 +53,10 @@ class Candidates:
         return self.view.storage.pod_waypoint[self.pods]
 
     def other_tiers(self) -> NDArray[np.int64] | int:
-        """Return how many of the two, robot and station, are on another tier than each pod.
+        """Return, for each pod, 1 if the robot is on another tier, plus 1 if the station is.
 
-        The values are 0, 1 or 2, and the shape is (C,). If the warehouse has a single tier, the
-        result is the number 0 instead of an array.
+        The shape is (C,). If the warehouse has a single tier, the result is the number 0 instead of
+        an array.
         """
         travel = self.view.travel
         if travel.tiers == 1:

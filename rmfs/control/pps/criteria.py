@@ -279,7 +279,7 @@ class BundleWorkAmount(PodCriterion):
 
 
 class BundleDemand(PodCriterion):
-    """Prefers the pod for which the bundles that wait at the station are most in demand."""
+    """Prefers the pod whose bundles, which wait at the station, are most in demand."""
 
     criterion: Literal["demand"] = "demand"
 

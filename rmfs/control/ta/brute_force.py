@@ -49,9 +49,9 @@ class BruteForce(Solo[BruteForceParameters]):
     straight trip from robot to pod at top speed; the time to lift the pod (and, if the robot
     carries another pod, to set down that pod); and either the time of the unhindered trip to the
     station or the expected wait there, whichever is longer. For the carried pod, only the last term
-    counts. For other pods, the delay that congestion is expected to cause on both trips can be
-    added (`congestion`). Ties go to the carried pod, then to the station and the pod with the
-    lowest number.
+    counts. The delay that congestion is expected to cause, times the weight `congestion`, is added
+    to the time of each trip. Ties go to the carried pod, then to the station with the lowest
+    number, then to the pod with the lowest number.
 
     The rule considers only one kind of work at a time, picks or bundles, and begins with picks. If
     it finds no work of this kind for a robot, but work of the other kind, it changes to the other

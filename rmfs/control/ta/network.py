@@ -75,7 +75,10 @@ class NetworkRule(TaskAllocation[NetworkParameters]):
                 yield task
 
     def rest_place(self, robot: Robot) -> int:
-        """Choose the waypoint where a robot rests, by the parameter `rest`; -1 if there is none."""
+        """Choose the waypoint to which a resting robot moves to make room; -1 if there is none.
+
+        The parameter `rest` determines the choice.
+        """
         return self._rest.choose(robot)
 
     def _whole(self, chosen: Any, consult: Consult) -> TaskDecision | None:

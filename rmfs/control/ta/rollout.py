@@ -43,9 +43,9 @@ class Rollout(TriesOut, TaskAllocation[TaskRolloutParameters]):
     alternatives in simulated trials. If a pod is to be fetched for a station, the alternatives are
     work for other stations and, for a pick station, other pods; if a pod is to be stored, they are
     other storage locations. The parameter `over` selects which kinds of alternatives are
-    considered. The decision with the best result is made, unless its advantage over the default
-    decision is not certain enough (`certainty`); then the default decision is made. The pacing
-    determines how much simulated time the computation takes; meanwhile, no robot gets a task.
+    considered. The best alternative replaces the default decision only if its advantage is certain
+    enough (`certainty`). The pacing determines how much simulated time the computation takes;
+    meanwhile, no robot gets a task.
     """
 
     parameters_model = TaskRolloutParameters

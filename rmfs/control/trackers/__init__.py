@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 class Tracker:
     """Base class of trackers, which keep statistics for several controllers.
 
-    A tracker reads the view, but changes nothing in it. It starts from the state of the world when
-    a controller first requests it. It exists until the end of the run, so it is also up to date for
-    controllers that are installed later.
+    A tracker reads the view, but changes nothing in it. It is created when a controller first
+    requests it, and starts from the state of the world at that time. It exists until the end of the
+    run, so it is also up to date for controllers that are installed later.
 
     Attributes
     ----------

@@ -52,9 +52,10 @@ class Congestion(Tracker):
     source
         Source of the delay. `recent`: passages and waiting times in this run; the weight of a count
         falls by half in seven minutes. `forecast`: as `recent`, but the delay in a region is
-        multiplied by a factor, which compares the number of robots whose straight routes to their
-        destinations now lead through the region with the recent mean of this number. Any other text
-        is the path of the table `heat` (`.parquet` or `.csv`) of an earlier run in the same layout;
+        multiplied by the ratio of the region's present load to its recent mean load. The load is
+        the number of robots whose straight routes to their destinations lead through the region;
+        1 is added to both loads, and the ratio is limited to the range `BOUNDS`. Any other text is
+        the path of the table `heat` (`.parquet` or `.csv`) of an earlier run in the same layout;
         its counts keep their full weight.
 
     Attributes

@@ -76,7 +76,7 @@ class UnkindWire:
             self.written += len(frame)
 
     def fetch(self, upto: int | None = None, timeout_s: float = 5.0) -> None:
-        """Read the bytes that have arrived; with `upto`, until `received` is at least `upto`.
+        """Read the bytes that have arrived; with `upto`, read until `received` reaches `upto`.
 
         Reading also ends if nothing arrives for `timeout_s` or the connection is closed.
         """

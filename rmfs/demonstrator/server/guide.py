@@ -1,10 +1,10 @@
 """Guides real robots along the plans of the traffic layer, and adapts the plans if robots are late.
 
 In each tick (every 50 ms), the server first processes the messages of the robots. A robot is late
-if its plan requires a step before the next tick, such as reaching a waypoint, that the robot has
-not yet confirmed. The rest of its plan is then postponed, together with the plans of robots that
-use the same waypoints later. After that, each robot whose next motion is due receives a route order
-(a command to turn and to drive over waypoints), and each driving robot receives the number of
+if it has not yet confirmed a step, such as reaching a waypoint, that its plan requires before the
+next tick. The rest of its plan is then postponed, together with the plans of robots that use the
+same waypoints later. After that, each robot whose next motion is due receives a route order (a
+command to turn and to drive over waypoints), and each driving robot receives the number of
 waypoints to which it may drive. Therefore, no plan is ahead of its robot, and a robot never enters
 a waypoint before all robots that were to use this waypoint earlier have left it.
 """

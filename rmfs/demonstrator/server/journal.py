@@ -40,8 +40,8 @@ class Journal:
     ------
     InputError
         If the file is not a journal or belongs to another demonstration. If `past_failure` is true,
-        also if no tick has failed since the last one whose messages were omitted, or if that tick
-        has failed again without its messages.
+        also if no tick has failed since messages were last omitted, or if the last failed tick
+        failed although its messages were omitted.
     """
 
     def __init__(self, path: Path, settings: dict[str, Any], *, past_failure: bool = False) -> None:

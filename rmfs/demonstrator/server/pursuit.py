@@ -31,7 +31,7 @@ class Pursuit:
         Number of the route order.
     move
         The move that the route order carries out, with the times planned when the route order was
-        created. If the robot is late, the times in the plan change, but not these.
+        created. If the robot is late, the times in the plan change, but those in `move` do not.
     heading_before_rad
         Heading of the robot, in rad, before the turn.
     waypoints

@@ -33,7 +33,7 @@ class Violation:
     element
         The element concerned: its kind, number and position.
     message
-        What is wrong with it.
+        What is wrong with the element.
     """
 
     severity: Severity

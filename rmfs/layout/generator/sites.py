@@ -27,8 +27,8 @@ class Site:
     kind
         Name of the kind of station, or `elevator`.
     exit, entrance
-        Positions along the side at which robots leave and enter its buffer, in tiles from the
-        northern or western end of the ring road on that side.
+        Where robots leave and enter the buffer: positions in tiles from the northern or western end
+        of the ring road on this side of the tier.
     """
 
     kind: str

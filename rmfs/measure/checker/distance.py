@@ -6,10 +6,10 @@ Each point moves with constant acceleration, so the squared distance over a comm
 a polynomial of degree four. In Bernstein form on that interval, the polynomial is never below its
 smallest coefficient: if no coefficient is below the squared limit, the points never come closer
 than the limit. The first and last coefficients are the values of the polynomial at the two ends of
-the interval, so a violation is proven if one of them is below the squared limit. If neither is
-proven, the interval is halved (de Casteljau's algorithm), and each half is examined in the same
-way. As intervals get shorter, the smallest coefficient converges quadratically to the minimum of
-the polynomial, so a few rounds suffice.
+the interval, so a violation is proven if one of them is below the squared limit. If neither safety
+nor a violation is proven, the interval is halved (de Casteljau's algorithm), and each half is
+examined in the same way. As intervals get shorter, the smallest coefficient converges quadratically
+to the minimum of the polynomial, so a few rounds suffice.
 """
 
 from __future__ import annotations

@@ -74,8 +74,8 @@ class Pieces:
     """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
 
     A row of kind guided is recorded if a robot in a demonstration was held up. It states the
-    straight line that the robot follows (its way), but not the robot's position on this line. The
-    piece of such a row covers the whole line at constant speed.
+    straight line that the robot follows, but not the robot's position on this line. The piece of
+    such a row covers the whole line at constant speed.
 
     Attributes
     ----------
@@ -86,8 +86,8 @@ class Pieces:
     x_m, y_m, vx, vy, hx, hy
         Position (m) and velocity (m/s) at `t0_s`, and half the acceleration (m/s²).
     guided
-        Whether the row is guided. The robot may then be anywhere on its way at any time between
-        `t0_s` and `t1_s`.
+        Whether the row is guided. If so, the robot may be anywhere on its straight line at any time
+        between `t0_s` and `t1_s`.
     """
 
     row: NDArray[np.int64]

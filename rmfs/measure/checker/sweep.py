@@ -113,7 +113,7 @@ def boxes(pieces: Pieces, radius_m: Floats, tier: Index, begin: int, end: int) -
     Parameters
     ----------
     begin, end
-        Number of the first slab, and of the slab after the last one.
+        Numbers of two slabs: boxes are made for the slabs from `begin` to `end` - 1.
     """
     first = np.maximum(np.floor(pieces.t0_s / SLAB_S).astype(np.int64), begin)
     last = np.minimum(np.ceil(pieces.t1_s / SLAB_S).astype(np.int64), end)

@@ -104,7 +104,8 @@ class Trace:
     def is_guided(self) -> NDArray[np.bool_]:
         """Whether each row is guided, shape (K,).
 
-        For a guided row, the robot's way is known, but not its position on the way.
+        For a guided row, the straight line that the robot follows is known, but the robot's
+        position on this line is not.
         """
         guided: NDArray[np.bool_] = self.kind == Motion.GUIDED
         return guided

@@ -106,7 +106,7 @@ class Rule:
     elements
         Conversions of the elements that are used, by their tags.
     left
-        Elements that are known but not used: the reason for each, by its tag.
+        For each known element that is not used, the reason; the keys are the tags of the elements.
     """
 
     name: str

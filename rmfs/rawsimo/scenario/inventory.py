@@ -33,7 +33,8 @@ class Inventory:
     block
         The inventory block.
     path
-        The settings file. The search for other files, named in the block, starts in its folder.
+        The settings file. The search for files that the block names starts in the folder of the
+        settings file.
     """
 
     def __init__(self, block: Settings, path: Path) -> None:

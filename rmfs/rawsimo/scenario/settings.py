@@ -22,8 +22,8 @@ _T = TypeVar("_T")
 class Settings:
     """The root or a block of a settings file or controller configuration.
 
-    It remembers which of its elements have been read. An absent element has the default value, if
-    any, that is given to the method that reads it. A wrong value raises `InputError`.
+    It remembers which of its elements have been read. For an absent element, a method with an
+    argument `default` uses this default. A wrong value raises `InputError`.
 
     Parameters
     ----------

@@ -109,7 +109,7 @@ def rows(path: Path, columns: Sequence[str], encoding: str = "utf-8-sig") -> Ite
     ------
     InputError
         If the file cannot be read, a required column is missing or occurs twice, or a row is
-        invalid. The message names the file and, for a column or a row, the line.
+        invalid. The message names the file and, if a column or a row is wrong, the line.
     """
     reader = None
     try:

@@ -82,8 +82,8 @@ class BacklogOrders:
     def draw(self, now_us: int, state: State) -> OrderArrival | None:
         """Return an order, or None.
 
-        The result is None if the backlog is full, during a pause or down period, and if stock
-        cannot serve the order drawn.
+        The result is None in a pause or down period, if the backlog is full, or if stock cannot
+        serve the order drawn.
         """
         # called in any case, since it has to observe every change of stock
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_orders, state.stored_space)
@@ -133,8 +133,8 @@ class BacklogBundles:
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
         """Return a bundle, or None.
 
-        The result is None if the backlog is full, during a pause or down period, and if the bundle
-        drawn would exceed the load limit.
+        The result is None in a pause or down period, if the backlog is full, or if the bundle drawn
+        would exceed the load limit.
         """
         load = state.load
         wanted = self._top_up.wants(now_us / US_PER_S, state.waiting_bundles, load)

@@ -55,9 +55,9 @@ class NeededBundles:
     def draw(self, now_us: int, state: State) -> BundleArrival | None:
         """Return a bundle of the SKU with the fewest units left; None if this SKU is not short.
 
-        The result is also None in a down period, while the maximum number of bundles is waiting,
-        and if the bundle would exceed the load limit. The last case starts a pause, in which the
-        result is None as well.
+        The result is also None in a down period, if the maximum number of bundles is waiting, or if
+        the bundle would exceed the load limit. The last case starts a pause, in which the result is
+        None as well.
         """
         if not self._rest.ends(now_us) or state.waiting_bundles >= self._config.bundles:
             return None

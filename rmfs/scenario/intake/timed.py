@@ -29,8 +29,8 @@ class Timed(Generic[T]):
         Function that creates the arrival for an accepted candidate.
     share
         Function that returns the share of active stations. A candidate is accepted if this share
-        exceeds its `needed_share`. If `share` is None, the rate is not tied to stations, and all
-        candidates are accepted.
+        exceeds the candidate's `needed_share`. If `share` is None, the rate is not tied to
+        stations, and all candidates are accepted.
     """
 
     def __init__(

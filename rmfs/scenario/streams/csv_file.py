@@ -25,8 +25,8 @@ def read_csv(path: Path, rows: Rows, problems: Problems) -> None:
     """Pass the rows of a CSV file to a receiver; line 1 contains the column names.
 
     A line is read only up to the maximum length (`LONGEST_LINE`), so memory is bounded. Errors in
-    the contents are added to `problems`. Reading ends early if line 1 is invalid, at a line that is
-    too long or not text, and after `MOST_ROWS` lines.
+    the contents are added to `problems`. Reading ends early if line 1 is invalid, if a line is too
+    long or not text, or if the file has more than `MOST_ROWS` lines.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Names and additional columns of orders in a file, kept so that results can be joined to it."""
+"""Names and additional columns of orders in a file, kept for joining results to the file."""
 
 from __future__ import annotations
 

@@ -49,7 +49,7 @@ class ChargeService:
         return self._task is not None
 
     def go_on(self) -> None:
-        """Start charging the robot at the charger, if there is one."""
+        """Start charging the robot at the charger, if a robot is there."""
         robot = self.station.robot
         task: Any = self._world.robots[robot].task if robot >= 0 else None
         if self._task is None and isinstance(task, ChargeTask):

@@ -22,7 +22,8 @@ class SwapService:
     Attributes
     ----------
     stock
-        Level (share of capacity) at arrival and time of arrival (s), for each battery in stock.
+        For each battery in stock, a pair: the level (share of capacity) with which the battery
+        arrived, and the time in s at which it arrived.
     """
 
     def __init__(

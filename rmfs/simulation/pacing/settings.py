@@ -33,7 +33,7 @@ class InstantPacing(_Mode):
 
 
 class WallPacing(_Mode):
-    """Optimisers run beside the simulation; answers take `speed` times their wall time."""
+    """Optimisers run beside the simulation; their wall time, times `speed`, is simulated time."""
 
     mode: Literal["wall"] = "wall"
     speed: Positive = 1.0

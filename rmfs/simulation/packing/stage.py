@@ -108,7 +108,7 @@ class PackingStage(Observer):
             self._let_go()  # parts that had to wait for a slot need none any more
 
     def order_assigned(self, order: Order) -> None:
-        """Stop holding a part of an order for release if further lines have been assigned to it."""
+        """Stop holding an order, or a part of one, to which further lines have been assigned."""
         for held in self._wall.held:
             if held.order is order:
                 self._forget(held)

@@ -72,8 +72,8 @@ class Plan:
     later
         Whether items may be assigned before pods are called for all their lines.
     split_orders
-        Maximum number of orders split at a time; None: as many as the put wall holds, or any
-        number without a wall.
+        Maximum number of orders split at a time; None: as many as the put wall holds, or no limit
+        if there is no put wall.
     """
 
     def __init__(
@@ -154,11 +154,12 @@ class Plan:
     def due(self, station: PickStation) -> Iterator[Planned]:
         """Yield items that can be assigned to a station now, one at a time.
 
-        Items that the pod at the head of the queue can serve come first. The reserved slots
-        (`kept_slots`) are for these items, and for items of a called pod that can serve none of the
-        station's open requests, because such a pod is not fetched before one of its items has a
-        slot. Items are dropped and counted as stale if they have left the backlog or, unless
-        `later`, if pods called or under way no longer have enough units for them.
+        Items that the pod at the head of the queue can serve come first, and may use the reserved
+        slots (`kept_slots`). If a called pod can serve none of the station's open requests, items
+        that this pod can serve may also use the reserved slots: the pod is fetched only after one
+        of these items has got a slot. Items are dropped and counted as stale if they have left the
+        backlog. Unless `later`, they are also dropped if pods called or under way no longer have
+        enough units for them.
         """
         self._forget_pods(station)
         waiting = self.items[station.index]

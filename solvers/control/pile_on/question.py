@@ -30,8 +30,8 @@ class Question:
     method
         `joint`, `cp_sat`, `greedy` or `hadgs`.
     limits, pruning
-        Limits on CP-SAT's search, and on the number of candidates, such as pods for each station,
-        among which it chooses.
+        Limits on the search of CP-SAT (`limits`), and on the number of candidates that CP-SAT
+        considers, such as pods for each station (`pruning`).
     bound_steps
         Number of steps of the search for a lower bound on the cost of every decision.
     """

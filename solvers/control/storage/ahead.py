@@ -47,7 +47,7 @@ class Ahead(PodStorageAssignment[P]):
 
     @abstractmethod
     def question(self, robots: Sequence[Robot]) -> Ask[Any]:
-        """Return the question of where to store these robots' pods, which `Ask.memo` lists."""
+        """Return the question of where to store these robots' pods; its `memo` lists the pods."""
 
     @abstractmethod
     def places(self, call: Call) -> Sequence[int]:

@@ -72,12 +72,12 @@ class PricesControl(PodStorageAssignment[PricesParameters]):
 
     Places are divided into zones by distance from the pick stations. Every `period_s` seconds, pods
     are divided into classes by expected visits, and a convex program determines how many pods of
-    each class should be stored in each zone in a steady state. It takes delays by congestion into
-    account. The price of a place, a dual price of this program, is the robot time that one more
-    place in its zone would save per hour. A pod goes to the empty place with the least cost: the
-    time of the trips to the place and from there to a pick station, plus the delay, plus the price
-    times the expected stay. Until the first answer, and after a failure, pods go to the nearest
-    empty place.
+    each class should be stored in each zone in a steady state. The program takes delays by
+    congestion into account. The price of a place, a dual price of this program, is the robot time
+    that one more place in its zone would save per hour. A pod goes to the empty place with the
+    least cost: the time of the trips to the place and from there to a pick station, plus the delay,
+    plus the price times the expected stay. Until the first answer, and after a failure, pods go to
+    the nearest empty place.
     """
 
     parameters_model = PricesParameters

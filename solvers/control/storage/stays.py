@@ -102,7 +102,10 @@ class StaysControl(Ahead[StaysParameters]):
         return Ask(solve, question, sizes, [robot.pod for robot in robots])
 
     def places(self, call: Call) -> Sequence[int]:
-        """Return the nearest empty place in each pod's zone, one by one; -1 if none is left."""
+        """Return, for each pod, the nearest empty place in its zone; -1 if none is left.
+
+        Pods are processed in sequence, and each place is given to only one pod.
+        """
         assert call.solution is not None
         storage = self.view.storage
         carriers = {robot.pod: robot for robot in self.view.robots if robot.pod >= 0}

@@ -66,9 +66,9 @@ def jobs(view: View, worth: Worth, robots_per_station: int, per_station: int) ->
     """Choose the next pods of every station, one pod after another.
 
     The next pod of a station is the one whose value minus trip time is largest; ties go to the pod
-    with the lowest number. At a pick station, the value counts the units picked and the orders
-    completed in addition to those of the pods chosen before. At a replenishment station, it counts
-    the bundles stored. Each pod is chosen only once, for one station.
+    with the lowest number. At a pick station, the value of a pod counts units and orders, except
+    those already picked or completed with the pods chosen before. At a replenishment station, it
+    counts the bundles stored. Each pod is chosen only once, for one station.
 
     Parameters
     ----------

@@ -39,7 +39,10 @@ def placement(data: Placement) -> Stated:
 
 
 def matching(data: Matching) -> Stated:
-    """Return the program that assigns at most one robot per task, and one task per robot."""
+    """Return the program that assigns robots to tasks.
+
+    Each robot does at most one task, and each task is done by at most one robot.
+    """
     builder = ProgramBuilder()
     x, left = _robots(builder, data)
     return _named(builder, x, left)

@@ -125,7 +125,7 @@ class Library:
     def enter(
         self, decision: Decision, found: Found | None, by: str, bound: float = math.nan
     ) -> list[str]:
-        """Enter an answer or a bound that is better than the known one, or both; save the table.
+        """Enter an answer and a bound, each if it is better than the known one; save the table.
 
         Parameters
         ----------

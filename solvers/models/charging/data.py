@@ -55,7 +55,8 @@ class Charging:
     waits
         Whether a robot is already on its way to a place, waits there or swaps its battery, shape
         (R,). Such a robot is away from work, and its battery does not drain, from time slot 0 to
-        the end of its stay; if the plan contains no stay for the robot, in all time slots.
+        the end of its stay. If the plan contains no stay for the robot, this holds in all time
+        slots.
     here
         Group of the place where a robot is being charged, or `AWAY` if it is not being charged,
         shape (R,). A robot that is being charged either leaves now, or has a stay that begins at
@@ -209,8 +210,9 @@ class Charging:
     def missing_s(self, away: Integers) -> Floats:
         """Return the cost of missing robots in each time slot, shape (T,), in s.
 
-        The cost is `missed_s` times the number of missing robots, averaged over the cases. It is
-        incurred in addition to the cost of time away from work that `idle` determines.
+        The cost is `missed_s` times the number of missing robots, averaged over the cases. In
+        addition, every time slot of a robot away from work costs `idle * slot_s`, whether the robot
+        is needed or not.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Candidate pairs: the pairs of pod and station, order and station, and robot and pod to consider.
+"""Candidates: pairs (pod and station, order and station, robot and pod) that a method considers.
 
 The *price* of a pod at a station is the cost of calling the pod, divided by the number of order
 lines that this pod alone could serve. The price of an order at a station is the total price of the

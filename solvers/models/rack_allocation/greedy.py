@@ -36,9 +36,9 @@ def solve(
     Returns
     -------
     The allocation; ties go to the lowest index. The bound is that of `pods_needed`. If a station
-    could not be filled, there is no allocation. Call an order servable if the whole stock suffices
-    for it alone: the status is then INFEASIBLE if there are fewer servable orders than slots, and
-    LIMIT otherwise.
+    could not be filled, there is no allocation. The status is then INFEASIBLE or LIMIT. It is
+    INFEASIBLE if fewer orders than slots are servable; an order is servable if the stock of all
+    pods suffices for this order alone.
     """
     begin = perf_counter()
     servable = (data.units <= data.stock.sum(axis=0)).all(axis=1)

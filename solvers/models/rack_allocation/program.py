@@ -7,8 +7,8 @@ largest order lines of that SKU, so
 .. math:: \sum_p \min(stock_{pk}, d_{sk})\, y_{ps} \ge \sum_o units_{ok}\, x_{os};
 
 and each SKU k of an order must be on at least one pod at the order's station: :math:`x_{os} \le
-\sum_{p \ni k} y_{ps}`. Orders that ask for more units of a SKU than all pods together hold have no
-columns, and neither do pods without any SKU of the other orders.
+\sum_{p \ni k} y_{ps}`. An order has no columns if it asks for more units of a SKU than all pods
+together hold. A pod has no columns if it holds no SKU of the remaining orders.
 """
 
 from __future__ import annotations

@@ -1,11 +1,12 @@
 """Local search on the sequence of visits: remove a visit, then repair the plan.
 
 For a given sequence of visits, `still_open` decides at which visit to open each order, as in
-interval scheduling: of the orders that would be completed later if they were opened only at the
-next visit, it opens those that would be completed first. The search removes the visit whose removal
-leaves the fewest orders incomplete. It then tries random moves (exchange two visits, move a visit,
-or replace a pod) and keeps those that do not increase the number of incomplete orders. When all
-orders are complete, a shorter plan has been found, and the search removes another visit.
+interval scheduling. At each visit, it considers only orders whose completion would be delayed if
+they were opened one visit later. Of these orders, it opens those that would be completed first. The
+search removes the visit whose removal leaves the fewest orders incomplete. It then tries random
+moves (exchange two visits, move a visit, or replace a pod) and keeps those that do not increase the
+number of incomplete orders. When all orders are complete, a shorter plan has been found, and the
+search removes another visit.
 """
 
 from __future__ import annotations

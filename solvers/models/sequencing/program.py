@@ -1,4 +1,4 @@
-r"""Rack sequencing as an integer program over at most T visits, the length of a heuristic plan.
+r"""Rack sequencing as an integer program with at most T visits, as many as in a heuristic plan.
 
 C is the number of order slots. The columns are binary; each is 1 if its statement is true:
 

@@ -62,10 +62,10 @@ class Stays:
     def periods(self) -> tuple[NDArray[np.int64], NDArray[np.int64], int]:
         """The periods during which each stay is present, and the number of periods.
 
-        A *period* is a moment at which the occupied places must be counted. As the number of stays
-        present can only grow until a stay ends, it suffices to count just before each end that is
-        the first after a begin. The stays present at such a moment form a maximal set of
-        simultaneous stays.
+        A *period* is a moment at which the occupied places must be counted. The number of stays
+        present can only grow until a stay ends. So it suffices to count just before the end of a
+        stay, and only if a stay has begun since the previous end. The stays present at such a
+        moment form a maximal set of simultaneous stays.
 
         Returns
         -------

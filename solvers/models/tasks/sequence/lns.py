@@ -61,9 +61,9 @@ def solve(
 
     Returns
     -------
-    The routes, never worse than the start. If no routes with all tasks that must be done were
-    found, the status is INFEASIBLE if the bound is infinite, otherwise LIMIT. The bound is that of
-    `relaxed_bound`.
+    The routes, never worse than the start, with the bound of `relaxed_bound`. If the search finds
+    no routes that contain all mandatory tasks, the solution has no routes; its status is then
+    INFEASIBLE if the bound is infinite, otherwise LIMIT.
 
     Raises
     ------

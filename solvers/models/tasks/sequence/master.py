@@ -7,9 +7,9 @@ r"""The restricted master program: choose one of the known routes for each robot
     \sum_p n_{pl} x_p \le 1
 
 Here :math:`x_p` is 1 if route p is chosen, and :math:`c_p` is its cost; :math:`s_t` is 1 if task t
-is postponed. Route p uses place l :math:`n_{pl}` times. The routes of robot r are denoted by
-:math:`p \in r`, and the routes in which task t is done by :math:`p \ni t`. Costs are in ticks
-(milliseconds).
+is postponed. Route p uses place l :math:`n_{pl}` times. The sum over :math:`p \in r` covers the
+routes of robot r, and the sum over :math:`p \ni t` covers the routes that contain task t. Costs are
+in ticks (milliseconds).
 """
 
 from __future__ import annotations

@@ -284,7 +284,8 @@ class Pricing:
 
         Returns
         -------
-        The routes found, and a lower bound on the cost of all routes of the robot, at most `below`.
+        The routes found, and a lower bound on the cost of every route of the robot. The bound is
+        at most `below`.
         """
         start = _Label(0, int(self._ticks.ready[robot]), NONE, 0, (), ())
         heap = self._further(robot, start, below, 0)
