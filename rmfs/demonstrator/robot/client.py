@@ -8,14 +8,11 @@
         link.send({"type": "tag", ...})
         link.flush(now_us)
 
-Only two operations block: `Link.wait`, and opening a connection. At the beginning of a session,
-each side proves that it knows the secret. Both sides then derive the same key from the secret and
-two nonces (random texts used only once), one of each side:
+Only `Link.wait` and opening a connection block. At the beginning of a session, each side proves
+that it knows the secret. Both then derive the same key from the secret and a nonce of each side:
 
     server -> robot   welcome: version, nonce
-    robot -> server   hello: version, name of the robot, nonce
-
-A hello is valid only as the reply to one particular welcome.
+    robot -> server   hello: version, name of the robot, nonce (valid for this welcome only)
 """
 
 from __future__ import annotations
