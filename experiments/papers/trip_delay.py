@@ -24,7 +24,7 @@ class TripDelay(Measure):
             "trip_delay_share",
             REAL,
             "share",
-            "Total delay by other robots / total time, of the trips that do not end at stations",
+            "Sum of hindered_s / total time, over the trips that do not end at stations",
             better=LESS,
         ),
     )
@@ -33,5 +33,5 @@ class TripDelay(Measure):
         """Return the share, from the table of trips."""
         trips = run.tables["trips"]
         trips = trips[trips["kind"] != "to_station"]
-        time_s = (trips["end_s"] - trips["start_s"]).sum()
-        return {"trip_delay_share": ratio(time_s - trips["unhindered_s"].sum(), time_s)}
+        lasted_s = (trips["end_s"] - trips["start_s"]).sum()
+        return {"trip_delay_share": ratio(trips["hindered_s"].sum(), lasted_s)}

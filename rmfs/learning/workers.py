@@ -12,6 +12,7 @@ import numpy as np
 from gymnasium import spaces
 
 from rmfs.learning.environment import DecisionEnv
+from rmfs.simulation.collection import ALLOCATIONS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,12 +21,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Shapes = dict[str, tuple[tuple[int, ...], str]]
-
-FEW_COLLECTIONS = 50_000
-"""Number of allocations between two garbage collections.
-
-It is large because runs create few reference cycles.
-"""
 
 RUNS_KEPT = 4
 """Ended runs are freed each time this many runs per environment have begun."""
@@ -168,7 +163,7 @@ class Stand:
         gc.unfreeze()
         gc.collect()
         gc.freeze()
-        gc.set_threshold(FEW_COLLECTIONS, 20, 100)
+        gc.set_threshold(ALLOCATIONS, 20, 100)
 
     def _write(self, place: int, seen: Any, info: dict[str, Any]) -> None:
         board = self._board

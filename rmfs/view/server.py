@@ -177,7 +177,6 @@ class _Handler(BaseHTTPRequestHandler):
     server: Server
     protocol_version = "HTTP/1.1"
     timeout = PATIENCE_S  # of a single read or write
-    asked_before = False
 
     def do_GET(self) -> None:
         self.server.reads(self.connection, over=True)
@@ -280,11 +279,10 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(answer.body)
 
     def handle_one_request(self) -> None:
-        """Await a request for a limited time, and handle it."""
-        if self.asked_before:  # the first has been awaited since the connection was accepted
-            self.server.reads(self.connection)
-        self.asked_before = True
+        """Answer a request, and await the next on the same connection, not for ever."""
         super().handle_one_request()
+        if not self.close_connection:
+            self.server.reads(self.connection)
 
     def handle(self) -> None:
         """Serve one connection; ignore the error if the page disconnects."""

@@ -150,6 +150,7 @@ class BruteForce(Solo[BruteForceParameters]):
     ) -> Iterator[_Job]:
         """Yield the best job of each station, by station."""
         view = self.view
+        here = np.array([robot.waypoint])
         for station in view.pick_stations if picks else view.replenishment_stations:
             index, waypoint = station.index, station.waypoint
             if not view.has_open_work(index):
@@ -157,7 +158,6 @@ class BruteForce(Solo[BruteForceParameters]):
             to_station = view.travel.to(waypoint, loaded=True)
             wait_s = self.parameters.queue_cost_s * len(station.tasks) ** 2
             if robot.pod >= 0 and consult.serves(robot.pod, index):
-                here = np.array([robot.waypoint])
                 bring_s = to_station[here] + self.parameters.delay_s(view, waypoint, here)
                 yield _Job(max(bring_s.item(), wait_s), index, robot.pod)
             pods = self.pods_for(robot, index)
