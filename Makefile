@@ -34,7 +34,7 @@ setup: $(VENV)/.built ## Install the pinned packages and build the Rust crate
 .PHONY: test
 test: setup ## Run the tests of the Rust crate and of the Python packages
 	$(CARGO) test $(MANIFEST) --no-default-features
-	$(BIN)/python -m pytest -n $(JOBS) --benchmark-disable
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --benchmark-disable
 
 .PHONY: lint
 lint: setup ## Check style, types, import rules and the Rust crate
@@ -53,7 +53,7 @@ format: setup ## Format the Python and Rust sources
 
 .PHONY: browse
 browse: setup ## Test the viewer in Chromium and build its page again, where Chromium and npm are
-	$(BIN)/python -m pytest -m slow -rs tests/view
+	$(BIN)/python -m pytest -m slow -n $(JOBS) --dist worksteal -rs tests/view
 
 .PHONY: wheel
 wheel: setup ## Build the wheel and try it in a project with folders of the same names
@@ -70,14 +70,14 @@ bench: setup ## Measure speed
 	$(BIN)/python -m pytest -m benchmark
 
 .PHONY: spoil
-spoil: setup ## Call the program with spoilt inputs for two minutes
-	$(BIN)/python -m tests.tools.spoil --seconds 120
+spoil: setup ## Call the program with spoilt inputs for a minute
+	$(BIN)/python -m tests.tools.spoil --seconds 60 --processes $(JOBS)
 
 # Spoilt inputs are new ones every day; a case that fails tells its number.
 .PHONY: soak
 soak: setup ## Run the long tests: whole days, other systems, an hour of spoilt inputs
 	$(BIN)/python -m pytest -m slow -n $(JOBS)
-	$(BIN)/python -m tests.tools.spoil --seconds 3600 --first $$(( $$(date +%s) / 86400 * 100000 ))
+	$(BIN)/python -m tests.tools.spoil --seconds 3600 --processes $(JOBS) --first $$(( $$(date +%s) / 86400 * 100000 ))
 
 .PHONY: docs
 docs: $(VENV)/.docs ## Build the documentation: docs/_build/html/index.html

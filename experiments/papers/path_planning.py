@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 
-from rmfs.experiments.papers.study import command, done, parser
+from rmfs.experiments.papers.study import command, done, parser, reference_inputs
 from rmfs.experiments.statistics import against, interval
 from rmfs.experiments.tables import HALF, Table
 
@@ -209,6 +209,9 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the study on all layouts and publish one table."""
     options = parser("path-planning", __doc__, reference="pp/*.xinst")
     given = options.parse_args(arguments)
+    for instance in INSTANCES:  # a missing layout is noticed before the first run
+        given.reference_layout = instance.reference
+        reference_inputs(given)
     made: Rows = {}
     studies = [finished(given, instance) for instance in INSTANCES]
     for instance, study in zip(INSTANCES, studies, strict=True):

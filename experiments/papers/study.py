@@ -176,7 +176,7 @@ def done(
     SystemExit
         If runs failed, as an incomplete study is not published.
     """
-    base, suffix = _reference(given)
+    base, suffix = reference_inputs(given)
     if base is None and layout is not None:
         base = {"layout": layout}
     base = {**(base or {}), **(more or {})}
@@ -204,8 +204,16 @@ def station_units_per_h(study: Study) -> float:
     return 3600.0 / min(station.unit_transfer_s for station in stations)
 
 
-def _reference(given: argparse.Namespace) -> tuple[dict[str, str] | None, str]:
-    """Return the inputs that replace those of the design, and the suffix of all file names."""
+def reference_inputs(given: argparse.Namespace) -> tuple[dict[str, str] | None, str]:
+    """Return the inputs that replace those of the design, and the suffix of all file names.
+
+    Without `--reference`, nothing is replaced and the suffix is empty.
+
+    Raises
+    ------
+    InputError
+        If the folder given by `--reference` lacks the layout.
+    """
     folder: Path | None = getattr(given, "reference", None)
     if folder is None:
         return None, ""

@@ -23,8 +23,8 @@ FEATURES = ("against", "across", "storage", "entrance", "flow", "waiting")
 - `storage`: whether the edge ends at a storage location
 - `entrance`: whether the edge lies on an aisle and ends within `NEAR_M` of the entrance of a queue
 - `flow`: how often the edge was driven in an earlier run, relative to the edge driven most often
-- `waiting`: how long a robot that drove the edge in an earlier run then stood still at its end, on
-  average
+- `waiting`: on an aisle, the mean time in s for which a robot waited at the end of the edge in an
+  earlier run, over all visits there, whichever edge the robot came by
 """
 
 NEAR_M = 3.0
@@ -34,7 +34,7 @@ LONG_S = 10.0
 """Limit of the feature `waiting`, in s."""
 
 FEW = 5.0
-"""Passages without waiting that are added to those counted, so that a few mean little."""
+"""Visits without waiting that are added to those counted, so that a few mean little."""
 
 
 def features(

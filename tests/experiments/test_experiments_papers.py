@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rmfs.experiments.papers import demonstrator, figure_5b, fleet_size
+from rmfs.experiments.papers import demonstrator, figure_5b, fleet_size, path_planning
 from rmfs.experiments.papers.study import WRONG_INPUT, command
 
 
@@ -103,6 +103,14 @@ def test_the_demonstrator_is_run_and_published(design, tmp_path, monkeypatch):
 def test_a_folder_without_the_layout_is_refused(tmp_path, capsys):
     assert command(demonstrator.main, ["--reference", str(tmp_path)]) == WRONG_INPUT
     assert "office-4bot.xinst does not exist" in capsys.readouterr().err
+
+
+def test_every_layout_is_looked_for_before_the_first_run(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(path_planning, "done", lambda *_, **__: pytest.fail("a run was begun"))
+    (tmp_path / "pp").mkdir()
+    (tmp_path / path_planning.INSTANCES[0].reference).write_text("")
+    assert command(path_planning.main, ["--reference", str(tmp_path)]) == WRONG_INPUT
+    assert "1-12-20-128-1965.xinst does not exist" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("study", [demonstrator, figure_5b])
