@@ -1,4 +1,4 @@
-"""`rmfs traffic`: experiments with path planners, and growth of computing time with the fleet."""
+"""`rmfs traffic`: experiments with path planners, and how computing time grows with the fleet."""
 
 from __future__ import annotations
 

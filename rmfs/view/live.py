@@ -107,7 +107,8 @@ class LiveRun:
     def limit_us(self, now_us: int) -> int:
         """Return the simulated time, in us, up to which the run may advance now.
 
-        While the run is paused, or would exceed its speed, this method waits and answers the pages.
+        While the run is paused, or ahead of the speed that was set, this method waits and answers
+        requests from the open pages.
         """
         with self._meeting:
             while True:

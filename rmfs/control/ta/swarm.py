@@ -83,7 +83,11 @@ class Swarm(Solo[SwarmParameters]):
         self._matched = [station_of_task(robot) for robot in view.robots]
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Yield a task for the carried pod or, without a pod, work for a drawn station or rest."""
+        """Yield a task for the pod that the robot carries.
+
+        If the robot carries no pod, the task is work for a station that is drawn at random or, if
+        there is no such work, to rest.
+        """
         if robot.pod < 0:
             yield self.work_for(robot, consult) or self.to_rest(robot)
             return

@@ -97,7 +97,7 @@ class PodScores(Tracker):
             self._speed += row * weights[sku]
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Update the speed of a pod from which a unit is picked or in which a bundle is stored."""
+        """Update the speed of a pod (how popular its contents are) after a pick or a delivery."""
         if trigger is Trigger.UNIT_PICKED:
             pod, sku = subject
             self._speed[pod] -= self._weight[sku]

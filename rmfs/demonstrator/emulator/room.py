@@ -92,7 +92,7 @@ class Room:
     layout
         The layout whose edges are the lines on the floor.
     robots
-        Index in the layout of each robot in the room, by the robot's name.
+        The robots in the room: the index of each in the layout, by name.
     tags
         The tag of every waypoint.
     address
