@@ -12,6 +12,7 @@ from rmfs.control.pps.random import RandomPod as Pps
 from rmfs.control.repositioning import Move
 from rmfs.control.ta.brute_force import BruteForce
 from rmfs.control.ta.constant_ratio import ConstantRatio
+from rmfs.control.ta.linear import Linear
 from rmfs.control.ta.random import RandomTasks
 from rmfs.control.ta.swarm import Swarm
 from rmfs.control.trackers.congestion import Congestion
@@ -149,6 +150,16 @@ class TestRandom:
         situation.assigned(s0=1)
         made = decide(situation, controller, Answers())
         assert [(task.pod, task.station) for task in made] == [(2, 0)]
+
+    def test_a_robot_without_work_of_its_kind_does_not_stop_the_others(self, situation) -> None:
+        """Robot 0 rests and takes picks only; robot 1 takes bundles, and one waits."""
+        controller = self.random(situation, other_kind=False)
+        controller._picks[1] = False
+        for robot in situation.world.robots[:2]:
+            situation.world.start_rest(robot, robot.waypoint)
+        situation.waiting_bundle(pod=3, station=1)
+        made = decide(situation, controller, Answers())
+        assert BringForBundles(situation.world.robots[1], 3, 1) in made
 
     def test_robots_begin_by_the_share_of_pick_stations(self) -> None:
         """Three of four stations are pick stations: about 75 of 100 robots begin as pickers."""
@@ -351,9 +362,32 @@ class TestSwarm:
         assert made == [BringForBundles(situation.world.robots[0], 1, 1)]
         assert controller._matched[0] == 1
 
+    def test_every_robot_at_rest_draws(self, situation, monkeypatch) -> None:
+        """Robot 0 draws rest; the station that robot 1 draws has work."""
+        situation.stock(3, s0=1)
+        situation.assigned(s0=1)
+        for robot in situation.world.robots:
+            situation.world.start_rest(robot, robot.waypoint)
+        controller = situation.make(Swarm)
+        monkeypatch.setattr(controller, "_draw_station", lambda robot: 0 if robot.index else -1)
+        made = decide(situation, controller, Answers(pods={0: 3}))
+        assert made[0] == BringForPicks(situation.world.robots[1], 3, 0)
+
     def test_robots_at_work_are_matched_when_it_is_installed(self, situation) -> None:
         situation.stock(1, s0=5)
         situation.assigned(s0=1)
         situation.world.start_pick(situation.world.robots[2], 1, 0)
         assert situation.world.robots[2].task.kind == "pick"
         assert situation.make(Swarm)._matched == [-1, -1, 0, -1]
+
+
+def test_linear_asks_a_nearer_robot_if_the_work_is_not_worth_it_for_one_far_away(situation) -> None:
+    """The trip to station 1 is estimated at 13 + 1 = 14 s for robot 0 and at 11 s for robot 3: sums
+    of -10 x 14 / 30 = -4.67 and -3.67, of which the second is above -4. Robot 2, which stands
+    beneath the pod, gets the task."""
+    for robot in situation.world.robots:
+        situation.world.start_rest(robot, robot.waypoint)
+    situation.waiting_bundle(pod=2, station=1)
+    controller = situation.make(Linear, weights={"away_s": -10.0, "rest": -4.0})
+    made = decide(situation, controller, Answers(pods={1: 2}))
+    assert made == [BringForBundles(situation.world.robots[2], 2, 1)]

@@ -15,7 +15,7 @@ from rmfs.control.ta.stations import bring, keeper_of
 from rmfs.control.task_candidates import MOVE, STORE, WORK, tasks
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Hashable, Iterator
 
     from rmfs.control.ta import Consult
     from rmfs.world.robots import Robot
@@ -72,6 +72,10 @@ class Linear(Solo[LinearParameters]):
             if task is not None:
                 return task
         return None
+
+    def finds_like(self, robot: Robot) -> Hashable:
+        """Return the robot's number: the sums depend on where the robot is."""
+        return robot.index
 
     def _best_first(self, robot: Robot, least: float = -inf) -> list[tuple[int, int]]:
         """List a robot's possible tasks, as kind and station (or -1), the greatest sum first.

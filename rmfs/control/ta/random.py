@@ -14,7 +14,7 @@ from rmfs.control.ta.solo import Solo, SoloParameters
 from rmfs.control.ta.stations import bring, keeper_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Hashable, Iterator
 
     from rmfs.control.ta import Consult
     from rmfs.control.view import View
@@ -102,6 +102,10 @@ class RandomTasks(Solo[RandomTasksParameters]):
                 station = self._any_of([stations[row] for row in rows], pod)
                 return bring(self.view, keeper_of(self.view, robot, pod), pod, station)
         return None
+
+    def finds_like(self, robot: Robot) -> Hashable:
+        """Return the robot's kind of work, unless it may also take work of the other kind."""
+        return None if self.parameters.other_kind else self._picks[robot.index]
 
     def _next_station(self, robot: Robot, consult: Consult) -> int:
         """Draw a station where the carried pod has work, or -1 if it is to be parked."""

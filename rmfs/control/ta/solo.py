@@ -16,7 +16,7 @@ from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.world.stations import PickStation
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Hashable, Iterator
 
     import numpy as np
     from numpy.typing import NDArray
@@ -40,14 +40,14 @@ P = TypeVar("P", bound=SoloParameters)
 class Solo(TaskAllocation[P]):
     """Finds tasks for one robot after another.
 
-    If no work is found for a robot at rest, there is no further search for any robot at rest until
-    work is added or a pod becomes available.
+    If no work is found for a robot at rest, there is no further search for this robot, and for the
+    robots that would find the same (`finds_like`), until work is added or a pod becomes available.
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
         self._rest = RestPlaces(view, parameters.rest, self.draw)
-        self._nothing_at: tuple[tuple[int, ...], ...] | None = None
+        self._nothing_at: dict[Hashable, tuple[tuple[int, ...], ...]] = {}
 
     @abstractmethod
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
@@ -56,6 +56,13 @@ class Solo(TaskAllocation[P]):
     @abstractmethod
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
         """Return a task for a robot at rest; None if there is no work for it."""
+
+    def finds_like(self, robot: Robot) -> Hashable:
+        """Return a key that is equal for all robots for which `work_for` finds no work if one has.
+
+        By default, the key is the same for all robots.
+        """
+        return None
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Yield a task for every robot that needs one, and work for robots at rest."""
@@ -67,16 +74,16 @@ class Solo(TaskAllocation[P]):
                     yield task
                 if not given:
                     break
+        now = self._work_versions()
         for robot in list(self.view.resting.values()):
-            now = self._work_versions()
-            if now == self._nothing_at:
-                return
-            if robot.index in self.view.resting:
+            alike = self.finds_like(robot)
+            if robot.index in self.view.resting and self._nothing_at.get(alike) != now:
                 found = self.work_for(robot, consult)
                 if found is None:
-                    self._nothing_at = now
+                    self._nothing_at[alike] = now
                 else:
                     yield found
+                    now = self._work_versions()
 
     def rest_place(self, robot: Robot) -> int:
         """Choose the waypoint where a robot rests, by the parameter `rest`; -1 if there is none."""

@@ -18,7 +18,7 @@ from rmfs.control.ta.stations import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Hashable, Iterator
 
     from numpy.typing import NDArray
 
@@ -110,6 +110,10 @@ class Swarm(Solo[SwarmParameters]):
         chosen = keeper_of(self.view, robot, pod)
         self._matched[chosen.index] = station
         return bring(self.view, chosen, pod, station)
+
+    def finds_like(self, robot: Robot) -> Hashable:
+        """Return the robot's number: each robot draws for itself."""
+        return robot.index
 
     def _next_station(self, robot: Robot, consult: Consult) -> int:
         """Return the station where a carried pod is served next; -1 if it is to be parked."""
