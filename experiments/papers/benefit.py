@@ -58,8 +58,8 @@ def completed(frame: pd.DataFrame, station_units_per_h: float) -> pd.DataFrame:
 def overview(frame: pd.DataFrame, groups: Sequence[str], columns: Sequence[str] = COLUMNS) -> Table:
     """Return a table of means over seeds, with one row for each group of runs.
 
-    The means of `columns` are shown with confidence intervals. Further columns show means without
-    intervals: of the optimisers' decision time, of the four columns `*_decision_share` of the
+    The means of `columns` are shown with confidence intervals. Further columns, without intervals,
+    show the means of the optimisers' decision time, of the four columns `*_decision_share` of the
     footprint, and of the bound on units per hour.
 
     Parameters

@@ -30,9 +30,9 @@ def fewest_late(
     """Return a lower bound on the number of late orders.
 
     A linear program maximises the number of orders on time; all other orders are late. It has one
-    constraint for each interval from an arrival to a due time. Of the orders that both arrive and
-    are due in the interval, the work for those on time is at most the length of the interval times
-    the number of stations.
+    constraint for each interval from an arrival to a due time. It considers the orders on time that
+    both arrive and are due in this interval: their total work is at most the length of the interval
+    times the number of stations.
 
     Parameters
     ----------

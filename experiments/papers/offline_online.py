@@ -160,8 +160,8 @@ def beside(frame: pd.DataFrame, gaps: Mapping[str, list[float]]) -> Table:
 def correlations(frame: pd.DataFrame, gaps: Mapping[str, float]) -> Table:
     """Return rank correlations of offline gaps with online measures, by family.
 
-    To pair the runs by seed, the mean over the family's arms with the same seed is first subtracted
-    from each value of a measure.
+    The runs are paired by seed: each value of a measure is replaced by its difference from the mean
+    of the family's arms with the same seed.
 
     Parameters
     ----------

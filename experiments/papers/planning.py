@@ -4,10 +4,10 @@ TA planning, an optimiser that plans several visits ahead, is run at the small s
 with three to five robots or, with `--large`, at the large site (layout `large`) with 20 and with 30
 robots. Orders are not split; they come from a backlog or arrive over time. The start rule is the
 same controller with `method = "greedy"` and otherwise the same parameters: it also continues the
-previous plan, but does not search. With `--anticipation`, TA planning that considers future orders
-is compared with TA planning that does not, instead of with the start rule. The tables also show
-stored bundles and used space, because a controller that stores fewer bundles has more robots for
-picking, but only for a while.
+previous plan, but does not search. With `--anticipation`, the comparison is not with the start
+rule: TA planning that considers future orders is compared with TA planning without this. The tables
+also show stored bundles and used space, because a controller that stores fewer bundles has more
+robots for picking, but only for a while.
 """
 
 from __future__ import annotations

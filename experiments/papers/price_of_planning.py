@@ -1,4 +1,4 @@
-"""The cost of planning time: units per hour over the time that a path plan takes.
+"""The cost of planning time: how units per hour depend on the time that a path plan takes.
 
 The design `price-of-planning` varies the time that it takes to plan the path of a robot's trip, for
 five fleets: three on one layout and two on another. There is one planner for all robots or, in arms

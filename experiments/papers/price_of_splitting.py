@@ -5,12 +5,12 @@ minutes away from the pick stations. The controllers split only as many orders a
 or, in the arms whose names contain `always`, any number of orders. The study publishes
 
 - the means of all arms, and differences from whole orders, paired by seed;
-- the gain of splitting within the capacity of the wall over the better of two alternatives: whole
-  orders, and splitting regardless of this capacity;
+- the gain of splitting within the capacity of the wall, compared with the better of two
+  alternatives: whole orders, and splitting regardless of this capacity;
 - the gain of optimisers over their start rules;
 - the number of slots of the wall at which splitting picks as many units per hour as whole orders;
-- the packer's time per additional tote at which pickers and packers together need as much time per
-  unit with splitting as with whole orders;
+- how much time packers may take for each additional tote until pickers and packers together need as
+  much time per unit with splitting as with whole orders;
 - the transport time to the wall at which the mean time from the arrival of an order to its packing
   is the same with splitting as with whole orders.
 
@@ -236,8 +236,8 @@ _PARTS = ("mean", HALF, "2.5 %", "97.5 %")
 def against_better(frame: pd.DataFrame) -> Table:
     """Return the gain in units per hour of splitting within the wall's capacity, in percent.
 
-    Gains are computed over whole orders, over splitting regardless of this capacity, and over the
-    better of these two.
+    There are three gains: compared with whole orders, with splitting regardless of this capacity,
+    and with the better of these two.
 
     Parameters
     ----------

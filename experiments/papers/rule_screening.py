@@ -1,10 +1,10 @@
 """Rule screening: which decisions matter (Merschformann, Lamballais, de Koster, Suhl 2019).
 
 The cited study combined rules for five decision problems in 1620 ways. It found that pick order
-assignment (POA) has a strong impact on the units picked per hour, but none of the other four
-problems has. Here, 72 of these combinations are run with common seeds. They are chosen to estimate
-the main effects as precisely as possible. An analysis of variance shows what share of the variation
-each problem explains. To run all combinations on a cluster, use `--design rule-factorial`.
+assignment (POA) strongly affects the units picked per hour, and that the other four problems do
+not. Here, 72 of these combinations are run with common seeds. They are chosen to estimate the main
+effects as precisely as possible. An analysis of variance shows what share of the variation each
+problem explains. To run all combinations on a cluster, use `--design rule-factorial`.
 """
 
 from __future__ import annotations

@@ -56,8 +56,8 @@ def anova(
 
     Interactions of two factors have one row each if the runs can separate all effects and leave at
     least one degree of freedom for the residual. Otherwise (as in a fractional design), a single
-    row, `interactions`, holds what the main effects do not explain of the differences between
-    combinations of levels, and the residual is the variation between runs of the same combination.
+    row, `interactions`, holds those differences between combinations of levels that the main
+    effects do not explain, and the residual is the variation between runs of the same combination.
     If there are too few runs even for this, interactions are part of the residual. The table's
     attribute `attrs["interactions"]` states which case applies.
 

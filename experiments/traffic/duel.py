@@ -64,7 +64,7 @@ def chosen(text: str) -> Choice:
 
 
 def settings(text: str, seed: int, layout: Layout) -> PlannerSettings:
-    """Return the settings, on a layout, of the planner named by a text."""
+    """Return the settings of a planner, given by name, on a layout."""
     return planner_settings(chosen(text), seed, layout)
 
 

@@ -1,4 +1,4 @@
-"""Growth of the computing time of whole warehouses with the fleet: `rmfs traffic warehouses`.
+"""How the computing time of whole warehouses grows with the fleet: `rmfs traffic warehouses`.
 
 The layouts are generated like the shipped layout `default`, with about ten pods and 1/12 of a pick
 station per robot. The backlog is constant, and rules decide. Each run has its own process, because

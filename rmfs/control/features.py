@@ -2,8 +2,8 @@
 
 `rmfs.control.candidates` lists the candidates, that is, the possible answers to a question, with
 their attributes. Here, the attributes that rate an answer become features: they are divided by a
-scale, so that 1 is a typical value, and clipped at `LIMIT`. Attributes that only say which order,
-bundle, robot, pod, station or place the answer concerns are left out.
+scale, so that 1 is a typical value, and clipped at `LIMIT`. Attributes that only identify the
+answer (the number of an order, bundle, robot, pod, station or place) are left out.
 """
 
 from __future__ import annotations

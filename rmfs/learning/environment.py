@@ -73,8 +73,9 @@ class DecisionEnv(gymnasium.Env[Any, np.int64]):
     observation
         Form of the observations: `dict` or `flat`.
     rule
-        Whether action k + 1 exists, which follows the installed rule. A rule assumes that all its
-        decisions are carried out; if some are not, its later answers may not suit the situation.
+        Whether there is an action k + 1, by which the agent follows the installed rule. A rule
+        assumes that all its decisions are carried out; if some are not, its later answers may not
+        suit the situation.
     footprint
         Whether to measure runs, so that `info` contains the footprint at the end. Without
         measurement, steps are 5 to 10 % faster.

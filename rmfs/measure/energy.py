@@ -20,9 +20,10 @@ WH = 3600.0
 class EnergyLog:
     """Records the energy that robots draw, if the scenario models energy.
 
-    When a visit in which units were picked ends, the energy that the robot has drawn since the end
-    of its previous such visit is divided equally among these units. This includes the energy for
-    driving, waiting, storing the previous pod, and any trip to a charger.
+    The energy is attributed to the units picked. At the end of each visit in which units were
+    picked, these units get equal shares of the energy that the robot has drawn since the end of its
+    previous visit of this kind. This includes the energy for driving, waiting, storing the previous
+    pod, and any trip to a charger.
 
     Attributes
     ----------

@@ -47,7 +47,7 @@ class Substreams:
         Parameters
         ----------
         ordinal
-            Number of the substream, which starts again from its first number.
+            Index of the substream, which then starts from the beginning.
         """
         self._counter[1] = ordinal
         self._generator.state = self._start

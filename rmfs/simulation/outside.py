@@ -133,7 +133,7 @@ class Outside:
         return self.taken < len(self.given) and self.given[self.taken][0] == question
 
     def drop_taken(self) -> None:
-        """Drop the answers received so far, which the start of prepared tasks has used up."""
+        """Drop the answers received so far: they were used when prepared tasks were started."""
         del self.given[: self.taken]
         self.taken = 0
 

@@ -65,8 +65,8 @@ class Readings:
         Columns with one entry for each pair of waypoint and purpose that occurred are
         `stays_waypoint`, `stays_purpose`, `stays_visits` and `stays_waiting_s`. The purpose is the
         number of the station for which a robot works, also while it fetches the pod. It is S, the
-        number of stations, if the robot stores a pod or fetches one for no station, and S + 1 in
-        all other cases.
+        number of stations, if the robot stores a pod, or fetches one but not for a station, and S +
+        1 in all other cases.
         """
         counted: dict[str, NDArray[Any]] = self._core.heat()
         at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])
@@ -111,9 +111,9 @@ class Readings:
         """Follow a run: return the part of the trace that previous calls have not returned.
 
         The motion that each robot is currently executing is included, and is returned again until
-        it has ended. A row therefore replaces what earlier calls returned for the same robot and
-        times after the row's `t0_us`. If a robot stands still during several calls, it gets several
-        consecutive rows, which `joined_holds` merges.
+        it has ended. From its `t0_us` on, a row therefore replaces whatever earlier calls returned
+        for its robot. If a robot stands still during several calls, it gets several consecutive
+        rows, which `joined_holds` merges.
 
         Parameters
         ----------

@@ -292,9 +292,10 @@ class Traffic(Readings):
     ) -> None:
         """Let plans of trips take time from now on; a robot departs when its plan is ready.
 
-        Only for planners per leg, which plan trip by trip. A plan is made around the reservations
-        that exist when planning begins. The robot departs no earlier than the end of the planning
-        time, but its route is reserved as soon as planning begins.
+        This is possible only with planners that plan one trip at a time (planners per leg). A plan
+        is made around the reservations that exist when planning begins. The robot departs no
+        earlier than the end of the planning time, but its route is reserved as soon as planning
+        begins.
 
         Parameters
         ----------
@@ -309,8 +310,8 @@ class Traffic(Readings):
         period_us
             Plans are begun only at multiples of this time; 0: at any time.
         lazy
-            Whether a robot asks for a plan only when it could depart, not already while it lifts a
-            pod.
+            Whether a robot asks for a plan only when it could depart; otherwise, it may ask
+            earlier, while it lifts a pod.
         each
             Whether each robot has a planner of its own, instead of one planner for all robots.
 

@@ -121,7 +121,7 @@ class Server(ThreadingHTTPServer):
         """Serve a connection in a new thread.
 
         If `MOST_CONNECTIONS` are open, the one that has been idle longest is closed in favour of
-        the new one. If none is idle, or twice as many are open, the new one is refused.
+        the new one. If none is idle, or twice `MOST_CONNECTIONS` are open, the new one is refused.
         """
         with self._lock:
             crowded, full = self._open >= MOST_CONNECTIONS, self._open >= 2 * MOST_CONNECTIONS

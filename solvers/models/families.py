@@ -39,7 +39,7 @@ class Family(Protocol):
         """Return the objective of the decision `values` for the problem `data`."""
 
     def violations(self, data: Any, values: Any, /) -> list[str]:
-        """Return descriptions of the constraints of `data` that the decision `values` violates."""
+        """Return descriptions of the constraints of `data` that a decision violates."""
 
 
 def family(name: str) -> Family:

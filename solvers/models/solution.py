@@ -131,9 +131,9 @@ class Solution(Generic[V_co]):
     sense
         Whether the objective is minimised or maximised. Default: minimised.
     built
-        Deterministic work spent building models, counted in nonzeros. Programs passed to a solver
-        count with the number of their nonzeros; other models count with the number of nonzeros that
-        would take as long to build.
+        Deterministic work spent building models, counted in nonzeros. For programs passed to a
+        solver, this is the number of nonzeros; for other models, the number of nonzeros that would
+        take as long to build.
 
     Raises
     ------

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from tests.tools.prose import docstrings, draw, main, pages
+import csv
+import re
+
+from tests.tools.prose import docstrings, draw, main, mixed, others, pages
 
 
 def test_a_seed_draws_the_same_again():
@@ -31,3 +34,35 @@ def test_the_draw_is_printed(capsys):
     assert capsys.readouterr().out.count("\n    ") >= 3
     assert main(["--seed", "1", "--pages", "100000"]) == 2
     assert "not that many" in capsys.readouterr().err
+
+
+def test_as_many_docstrings_of_others_are_mixed_in_with_no_origin_shown(tmp_path, capsys):
+    ours = {one.name for one in draw(3, 0, 20)[1]}
+    arguments = ["--seed", "3", "--docstrings", "20", "--among", "networkx", "scipy"]
+    assert main([*arguments, "--out", str(tmp_path)]) == 0
+    rows = list(csv.DictReader((tmp_path / "key.csv").read_text("utf-8").splitlines()))
+    names = [row["name"] for row in rows]
+    assert ours <= set(names) and len(names) == 40
+    assert [sum(name.startswith(other) for name in names) for other in ("networkx", "scipy")] == [
+        10,
+        10,
+    ]
+    text = (tmp_path / "passages.md").read_text("utf-8")
+    assert re.findall(r"^## (\d+): ", text, re.M) == [row["number"] for row in rows]
+    assert not re.search(r"\.py:\d+", text)
+    # not ours first, then the others
+    assert len({name.partition(".")[0] for name in names[:20]}) > len({"rmfs", "solvers"})
+    assert [one.name for one in mixed(3, 20, ["networkx", "scipy"])] == names
+
+
+def test_examples_and_references_of_others_are_left_out():
+    found = others("networkx")
+    assert len(found) > 500
+    assert not any(">>>" in one.text or "References\n---" in one.text for one in found)
+
+
+def test_another_package_must_be_there(tmp_path, capsys):
+    given = ["--seed", "3", "--among", "no_such_package", "--out", str(tmp_path / "out")]
+    assert main(given) == 2
+    assert "no_such_package" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

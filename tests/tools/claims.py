@@ -39,11 +39,12 @@ HEAD = """\
 
 This page lists the numbers that we claim and the commands that reproduce them. Each *number* is
 read from the *file* in the last column, a table in `results/published`. Unless the claim states
-otherwise, it is a mean over seeds. The half width of its 95 % confidence interval follows if the
-table contains one. If a claim compares one thing *against* another, the number is the value of the
-first minus that of the second or, if the unit is %, this difference in percent of the second. The
-*input hash* identifies the design: its arms, its seeds and the content of all inputs. The
-provenance file beside the table contains the full hash, the runs and the version of the code.
+otherwise, it is a mean over seeds; if the table contains its 95 % confidence interval, the number
+is followed by ± and half the width of this interval. If a claim compares one thing *against*
+another, the number is the value of the first minus that of the second or, if the unit is %, this
+difference in percent of the second. The *input hash* identifies the design: its arms, its seeds and
+the content of all inputs. The provenance file beside the table contains the full hash, the runs and
+the version of the code.
 
 Figures 5a and 5b and section 4 are those of Merschformann, Xie, Li (2018), the paper on the
 simulator RAWSim-O. Section 4 of the paper describes the [demonstrator](demonstrator.md). For figure

@@ -30,7 +30,7 @@ class ByDemandParameters(LevelParameters):
     window_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 900.0
     """Length, in seconds, of the most recent period in which arriving orders are counted."""
     calm_share: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.8
-    """Few orders are considered to arrive if their rate in the most recent period (`window_s`) is
+    """Demand counts as low if the rate of arriving orders in the most recent period (`window_s`) is
     below this share of the mean rate since the rule was installed."""
 
     @pydantic.model_validator(mode="after")

@@ -72,7 +72,7 @@ class RandomExchange(MethodManagement[RandomParameters]):
         Raises
         ------
         InputError
-            If an alternative is not compatible with them; if it contains a rule that decides
+            If an alternative is not compatible with these rules; if it contains a rule that decides
             several problems; or if it contains a dummy (which leaves its problem to another rule).
         """
         given = choices[Problem.MM].parameters

@@ -29,9 +29,9 @@ class PodMatch(BestPair[PodMatchParameters]):
     """Assigns orders that match the pods at a station or on their way to it, for a high pile-on.
 
     The score of a pair of order and station is the number of units of the order that pods at the
-    station, or on their way to it, can supply. Stock that open orders of the station still need
-    does not count. The pair with the highest score is assigned; this is repeated until no order can
-    be assigned. Ties are broken by `tie_breaker`; remaining ties go to the order that arrived
+    station, or on their way to it, can supply. Units that orders already at the station still need
+    are not counted. The pair with the highest score is assigned; this is repeated until no order
+    can be assigned. Ties are broken by `tie_breaker`; remaining ties go to the order that arrived
     first, then to the station with the lowest number.
     """
 

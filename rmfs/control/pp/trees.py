@@ -26,8 +26,9 @@ class PbsParameters(TreeParameters):
 class Cbs(PathPlanning[TreeParameters]):
     """CBS (conflict-based search): if the paths of two robots conflict, one of them gives way.
 
-    The search tree has a branch for each choice of the robot that gives way; the most promising
-    node of the tree is examined first. Paths are planned up to the destinations, without a horizon.
+    For each conflict, the search tree has two branches: in each of them, a different one of the two
+    robots gives way. The most promising node of the tree is examined first. Paths are planned up to
+    the destinations, without a horizon.
     """
 
     parameters_model = TreeParameters
@@ -37,8 +38,8 @@ class Cbs(PathPlanning[TreeParameters]):
 class Pbs(PathPlanning[PbsParameters]):
     """PBS (priority-based search): if the paths of two robots conflict, one plans around the other.
 
-    A depth-first search tries both choices of the robot that plans around the other, the cheaper
-    choice first. Only conflicts within a rolling horizon are resolved.
+    A depth-first search tries both possibilities (either robot may plan around the other), the
+    cheaper one first. Only conflicts within a rolling horizon are resolved.
     """
 
     parameters_model = PbsParameters

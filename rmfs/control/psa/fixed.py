@@ -19,9 +19,9 @@ class Fixed(PodStorageAssignment[NoParameters]):
     """Stores every pod at the storage location where it stood at the start of the run.
 
     If that location is occupied, the pod is stored at the empty location with the least travel time
-    from the robot. The pod's own location can be occupied by another pod, stored there by another
-    rule (repositioning, or a PSA rule installed earlier), or by a robot that rests there because
-    there is no pod to rest beneath.
+    from the robot. The pod's own location can be occupied by another pod (stored there by
+    repositioning or by a PSA rule installed earlier) or by a robot (resting there because there is
+    no pod to rest beneath).
     """
 
     def __init__(self, parameters: NoParameters, view: View, rng: np.random.Generator) -> None:

@@ -92,7 +92,7 @@ class Ranking:
         return targets
 
     def seen(self, target: int) -> NDArray[np.bool_]:
-        """Return which of the L places are empty and found from a target rank, shape (L,).
+        """Return which of the L places a search from a target rank finds empty, shape (L,).
 
         The search begins with the target rank and goes outward: the next better rank, the next
         worse, and so on. It ends when at least `corridor` ranks have been searched and an empty

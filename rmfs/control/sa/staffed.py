@@ -62,8 +62,8 @@ class Staffed(StationActivation[StaffedParameters]):
     def next_event_s(self) -> float:
         """Return the simulated time, in s, at which this rule must decide again; inf if never.
 
-        It is the time at which pickers come or leave next, or of the next check of fatigue if that
-        is earlier.
+        This is the time of the next change of shift or of the next check of fatigue, whichever is
+        earlier.
         """
         staff = self.view.staff
         if staff is None:

@@ -54,8 +54,8 @@ class BruteForce(Solo[BruteForceParameters]):
     number, then to the pod with the lowest number.
 
     The rule considers only one kind of work at a time, picks or bundles, and begins with picks. If
-    it finds no work of this kind for a robot, but work of the other kind, it changes to the other
-    kind for all robots.
+    there is no work of this kind for a robot but there is work of the other kind, the rule changes
+    to the other kind for all robots.
 
     If the best pod is not the carried one, the robot first parks the carried pod, then fetches the
     best one. The carried pod is parked at the empty storage location for which the time to drive

@@ -74,7 +74,7 @@ class Linear(Solo[LinearParameters]):
         return None
 
     def finds_like(self, robot: Robot) -> Hashable:
-        """Return the robot's number: the sums depend on where the robot is."""
+        """Return the robot's number, because the weighted sums depend on the robot's position."""
         return robot.index
 
     def _best_first(self, robot: Robot, least: float = -inf) -> list[tuple[int, int]]:

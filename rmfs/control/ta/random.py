@@ -104,7 +104,7 @@ class RandomTasks(Solo[RandomTasksParameters]):
         return None
 
     def finds_like(self, robot: Robot) -> Hashable:
-        """Return the robot's kind of work, unless it may also take work of the other kind."""
+        """Return the robot's kind of work or, if robots may do both kinds, a key common to all."""
         return None if self.parameters.other_kind else self._picks[robot.index]
 
     def _next_station(self, robot: Robot, consult: Consult) -> int:

@@ -58,7 +58,9 @@ class Solo(TaskAllocation[P]):
         """Return a task for a robot at rest; None if there is no work for it."""
 
     def finds_like(self, robot: Robot) -> Hashable:
-        """Return a key that is equal for all robots for which `work_for` finds no work if one has.
+        """Return the key of the robot's group.
+
+        If `work_for` finds no work for a robot, it finds none for the others of its group either.
 
         By default, the key is the same for all robots.
         """

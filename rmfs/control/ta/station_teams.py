@@ -100,7 +100,10 @@ class StationTeams(TaskAllocation[P]):
         return None
 
     def instead_of_rest(self, robot: Robot, consult: Consult) -> TaskDecision | None:
-        """Find a task for a robot if none of `stations_for` has work; None if it is to rest."""
+        """Find a task for a robot that has no work at any of its stations (`stations_for`).
+
+        Return None if the robot is to rest.
+        """
         return None
 
     def may_be_moved(self, consult: Consult) -> bool:

@@ -85,8 +85,8 @@ class Swarm(Solo[SwarmParameters]):
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Yield a task for the pod that the robot carries.
 
-        If the robot carries no pod, the task is work for a station that is drawn at random or, if
-        there is no such work, to rest.
+        If the robot carries no pod, it works for a station that is drawn at random. If no station
+        has work, the robot rests.
         """
         if robot.pod < 0:
             yield self.work_for(robot, consult) or self.to_rest(robot)

@@ -60,10 +60,10 @@ class TurnoverClasses(Tracker):
       first. Ties are broken by distance to the nearest pick station, then by number. The pods are
       divided among the classes in proportion to the number of locations in each class.
     - SKUs are sorted by units ordered, the most ordered first; ties are broken by number. The
-      weight of a SKU is the mean of two shares: its share of all units ordered, and its space per
-      unit as a share of the sum of this quantity over all SKUs. A class takes SKUs until the total
-      weight of the SKUs in this and faster classes reaches a limit: the capacity of the pods in
-      these classes, as a share of the capacity of all pods.
+      weight of a SKU is the mean of two shares: its share of all units ordered, and its share of
+      the space that one unit of every SKU takes. A class takes SKUs until the total weight of the
+      SKUs in this and faster classes reaches a limit: the capacity of the pods in these classes, as
+      a share of the capacity of all pods.
 
     Pods and SKUs are classified when a rule first requests the tracker. They are reclassified on
     the first access after `reallocation_period_s` have passed, or `reallocation_orders` orders have

@@ -1,1 +1,1 @@
-"""The server, which plans for all robots, and commands and tracks the real or emulated ones."""
+"""The server: it plans for all robots, and commands and tracks them, real or emulated."""

@@ -39,9 +39,9 @@ class Journal:
     Raises
     ------
     InputError
-        If the file is not a journal or belongs to another demonstration. If `past_failure` is true,
-        also if no tick has failed since messages were last omitted, or if the last failed tick
-        failed although its messages were omitted.
+        If the file is not a journal or belongs to another demonstration. Also if `past_failure` is
+        true and there are no messages to omit: no tick has failed since messages were last omitted,
+        or the last tick failed although its messages had been omitted.
     """
 
     def __init__(self, path: Path, settings: dict[str, Any], *, past_failure: bool = False) -> None:

@@ -36,7 +36,8 @@ ROAD = (Kind.ROW_AISLE, Kind.COLUMN_AISLE, Kind.CROSSING, Kind.RING, Kind.HALL)
 def tile_kinds(parameters: LayoutParameters) -> NDArray[np.int8]:
     """Return the kind of each tile of a tier, shape (rows, columns), before buffers are added.
 
-    Tiles at which buffers are added later are `NOTHING`; those of later pockets are `STORAGE`.
+    Buffers and pockets are added later; until then, the tiles of buffers are `NOTHING`, and those
+    of pockets are `STORAGE`.
     """
     size = extent(parameters)
     kinds = np.full((size.rows, size.columns), Kind.NOTHING, dtype=np.int8)

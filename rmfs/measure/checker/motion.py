@@ -73,7 +73,7 @@ def lengths(layout: Layout, trace: Trace) -> Floats:
 class Pieces:
     """Motions of constant acceleration: position(t) = p + v (t - t0) + h (t - t0)².
 
-    A row of kind guided is recorded if a robot in a demonstration was held up. It states the
+    If a robot in a demonstration is held up, a row of the kind `guided` is recorded. It states the
     straight line that the robot follows, but not the robot's position on this line. The piece of
     such a row covers the whole line at constant speed.
 

@@ -27,8 +27,8 @@ class Delays(Measure):
             REAL,
             "share",
             f"Share of the total turnover time of completed orders: {what}. The time of an order "
-            "is the mean over its lines, and that of a line refers to its last unit; empty if no "
-            "order was completed",
+            "is the mean of the times of its lines; the time of a line is that of its last unit. "
+            "The share is empty if no order was completed",
             better=LESS if part in _LESS else NEITHER,
         )
         for part, what in PARTS.items()

@@ -118,8 +118,8 @@ class Backlog(Measure):
             "orders_short",
             INTEGER,
             "orders",
-            "Orders that, when they arrived, needed more units of a SKU than were in stock and "
-            "not yet needed for earlier orders",
+            "Orders for which stock was short when they arrived: they needed more units of a "
+            "SKU than were left in stock for them by earlier orders",
             better=LESS,
         ),
     )

@@ -194,7 +194,7 @@ CONTROLLERS = (
 
 
 def decisions(logs: Logs) -> pd.DataFrame:
-    """Return one row per call of a controller or question to an optimiser, sorted by time.
+    """Return the calls of controllers and the questions to optimisers, one per row, by time.
 
     A call has a row only if the controller made decisions in it without an optimiser. Calls and
     questions of the warm-up are left out.

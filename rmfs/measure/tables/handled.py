@@ -31,9 +31,9 @@ PICKS = (
         "picker",
         INTEGER,
         "",
-        "Picker, as in the table `pickers`. If the scenario has no pickers, picker, layer "
-        "and face are -1, handling_s and fatigue are empty, and error, noticed and turned "
-        "are false",
+        "Picker, as in the table `pickers`. If pickers are not modelled, the columns picker, "
+        "layer and face are -1, handling_s and fatigue are empty, and error, noticed and "
+        "turned are false",
     ),
     Column("handling_s", REAL, "s", "Time that the picker spent on the unit, rework included"),
     Column(

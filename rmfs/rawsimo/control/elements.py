@@ -74,7 +74,7 @@ class Complement(NamedTuple):
 
 
 class Numbers(NamedTuple):
-    """An element that contains numbers, separated by commas or one in each child element."""
+    """An element with numbers: either separated by commas, or one in each child element."""
 
     key: str
     default: tuple[float, ...]

@@ -83,8 +83,8 @@ def add_edges(instance: Instance, waypoints: list[Table], rides: set[tuple[int, 
     Parameters
     ----------
     waypoints
-        The waypoints, as returned by the function `waypoints`. The edges are written to their key
-        `to`.
+        The waypoints, as returned by the function `waypoints`. The edges from a waypoint are added
+        to it, as the value of the key `to`.
     rides
         Rides of elevators as pairs (origin, destination) of waypoints.
     """

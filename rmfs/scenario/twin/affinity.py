@@ -45,9 +45,9 @@ TRIES = 16
 def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> float:
     """Return how often pairs of SKUs recur, divided by how often they would recur by chance.
 
-    Recurrence is measured by the probability that two of the pairs, chosen at random, are equal. By
-    chance, the two SKUs of a pair would be drawn independently, except that they differ. The result
-    is nan if there are fewer than `LEAST_PAIRS` pairs or no pair recurs.
+    Recurrence is measured by the probability that two of the pairs, chosen at random, are equal.
+    Pairs by chance are pairs of two different SKUs that are otherwise drawn independently. The
+    result is nan if there are fewer than `LEAST_PAIRS` pairs or no pair recurs.
 
     Parameters
     ----------

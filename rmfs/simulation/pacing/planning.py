@@ -154,8 +154,8 @@ def let_plans_take_time(
     planner
         Name of the fleet's path planner.
     read
-        Function of the folder of a recorded run; it reads and returns the planning parameters and
-        the searches of that run.
+        Function that takes the folder of a recorded run, and returns the planning parameters and
+        the searches recorded there.
 
     Raises
     ------

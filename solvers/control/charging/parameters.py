@@ -33,8 +33,8 @@ class ScheduleParameters(LevelParameters):
     """Value of energy in robot time, as a multiple of the time in which the most powerful charger
     supplies the energy."""
     idle: Share = 0.6
-    """Cost of time that a robot spends away from work while it is not needed, as a share of the
-    cost of this time if it is needed."""
+    """Cost of a second that a robot spends away from work while it is not needed. A second away
+    from work while the robot is needed costs 1."""
     curve: Share = 0.2
     """Curvature of the value of energy: the first unit of energy in an empty battery is worth (1 +
     `curve`) times the average, and the last one in a full battery (1 - `curve`) times."""

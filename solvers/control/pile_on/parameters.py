@@ -30,7 +30,8 @@ class JointParameters(SearchParameters):
     wall is then ignored. Default: as many as the put wall holds; without a put wall, any number."""
     part_s: NotNegative = 0.0
     """With `split`, cost of an additional tote of an order, in seconds of robot time. An order is
-    split only if calling pods to serve it whole at one station now would cost more."""
+    split only if that costs less than calling the pods that would serve it whole at one station
+    now."""
     later: bool = False
     """Whether an order may get a slot before pods are called for all of its lines; not possible
     with `split`."""

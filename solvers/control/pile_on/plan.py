@@ -155,11 +155,10 @@ class Plan:
         """Yield items that can be assigned to a station now, one at a time.
 
         Items that the pod at the head of the queue can serve come first, and may use the reserved
-        slots (`kept_slots`). If a called pod can serve none of the station's open requests, items
-        that this pod can serve may also use the reserved slots: the pod is fetched only after one
-        of these items has got a slot. Items are dropped and counted as stale if they have left the
-        backlog. Unless `later`, they are also dropped if pods called or under way no longer have
-        enough units for them.
+        slots (`kept_slots`). A called pod is fetched only once it can serve an item with a slot at
+        the station. If there is none, items that this pod can serve may use the reserved slots,
+        too. Items are dropped and counted as stale if they have left the backlog. Unless `later`,
+        they are also dropped if pods called or under way no longer have enough units for them.
         """
         self._forget_pods(station)
         waiting = self.items[station.index]

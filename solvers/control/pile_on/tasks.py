@@ -49,9 +49,9 @@ class PileOnTasksParameters(JointParameters):
     rests)."""
 
     when_needed: bool = False
-    """Whether pods are called only for stations that have less than `horizon_s` seconds of work, or
-    orders that still lack pods. If false, pods are called whenever a slot can be filled, as in the
-    model M1G of Jiao et al. (2025)."""
+    """Whether pods are called only for two groups of stations: those that have less than
+    `horizon_s` seconds of work, and those with orders for which pods are still missing. If false,
+    pods are called whenever a slot can be filled, as in the model M1G of Jiao et al. (2025)."""
     kept_slots: Annotated[int, pydantic.Field(ge=0)] = 0
     """Number of slots of each station that are reserved for orders that the pod at the head of the
     station's queue can serve."""
@@ -90,11 +90,11 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     """Asks a model which orders get slots, which pods are called, and which robots fetch the pods.
 
     The model is used after the events in `triggers`, at most once in `buffer_s` seconds, and only
-    if some station has a free slot for which no order is planned, or open requests that the pods
-    under way to the station cannot serve. The model chooses from the robots that carry no pod and
-    have no task other than resting. Its answer is added to a plan: planned orders get slots when
-    slots are free, and called pods are fetched by the robots that the answer names. If the robot
-    named for a pod is no longer free, the nearest free robot fetches the pod.
+    if it is needed by some station: one with a free slot for which no order is planned, or one with
+    requests that the pods under way to it cannot serve. The model chooses from the robots that
+    carry no pod and have no task other than resting. Its answer is added to a plan: planned orders
+    get slots when slots are free, and called pods are fetched by the robots that the answer names.
+    If the robot named for a pod is no longer free, the nearest free robot fetches the pod.
 
     All other decisions are made by rules. A robot keeps its pod at the station while there is work
     for the pod, then (with `other_stations`) takes it to pick stations nearby that the pod can

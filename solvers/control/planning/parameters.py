@@ -57,8 +57,9 @@ class PlanningParameters(SearchParameters):
     part of this value (apparent tardiness cost, Vepsalainen and Morton 1987). 0: due times are
     ignored."""
     late_within_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 300.0
-    """Time, in seconds, before the due time at which the value `late_s` is smaller by the factor e.
-    It should be about as long as the time from a plan to its last visit."""
+    """If a line is served this number of seconds before its due time, the value `late_s` counts
+    less by the factor e than at the due time. It should be about as long as the time from a plan to
+    its last visit."""
     open_s: NotNegative = 60.0
     """Additional value of serving a line whose order already has a slot, in seconds of robot time.
     This value keeps plans stable and frees slots."""

@@ -105,7 +105,7 @@ class Plan:
             orders.sort(key=lambda one: one.sequence)
 
     def call(self, station: int) -> Call | None:
-        """Return the optimiser call that planned for a station; None if the start rule did."""
+        """Return the optimiser call that made a station's plan; None if the start rule made it."""
         return self._call[station]
 
     def keys_of(self, stations: Sequence[int]) -> set[tuple[int, int]]:

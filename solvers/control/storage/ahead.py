@@ -67,7 +67,7 @@ class Ahead(PodStorageAssignment[P]):
             yield self.question(robots)
 
     def answered(self, call: Call) -> Iterator[Any]:
-        """Replace the plan by the answer, without pods already stored or places no longer empty."""
+        """Replace the plan by the answer, less pods already stored and places already taken."""
         self._plan.clear()
         if call.solution is not None:
             carried = {robot.pod for robot in self.view.robots}

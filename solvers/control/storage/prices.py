@@ -63,8 +63,8 @@ class PricesParameters(StorageParameters):
     period_s: Positive = 300.0
     """Time, in seconds, after which prices are recomputed."""
     congestion_s_h: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 0.02
-    """Delay by congestion, in s h: a visit by a pod from a zone is delayed by this number of
-    seconds for each visit per hour that the pods of this zone make."""
+    """Delay by congestion, in s h. The delay of a visit, in seconds, is this number times the
+    number of visits per hour that pods of the same zone make."""
 
 
 class PricesControl(PodStorageAssignment[PricesParameters]):

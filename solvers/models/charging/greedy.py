@@ -10,7 +10,7 @@ For the lower bound, each robot pays a price :math:`\lambda_t` for being away in
 If the right-hand side replaces the cost of missing robots, and the limits `places` are dropped, the
 robots can choose their stays independently; the minimum cost of these choices is a lower bound. The
 heuristic computes this bound for three sets of prices, derived from its plan: the marginal cost of
-one more robot away, that of one robot fewer away, and the mean of the two. It returns the best
+sending one more robot away, that of sending one fewer, and the mean of both. It returns the best
 bound.
 """
 

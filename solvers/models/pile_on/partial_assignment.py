@@ -235,7 +235,7 @@ class PartialAssignment:
 
         By constraint (5) of `program`, the pod must serve an order with a slot at the station. If
         it serves no order already placed there, one of the prospects must take the slot of a placed
-        order. That placed order must not be the only one that another called pod serves.
+        order. If another called pod serves only one placed order, that order must stay.
         """
         pods = self.free_pods(station)
         if self._spare_order(station) < 0:

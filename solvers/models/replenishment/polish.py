@@ -25,8 +25,8 @@ def polished(data: Replenishment, stocking: Stocking) -> Stocking:
 
     Returns
     -------
-    A stocking with no higher cost, in which at least as many of the bundles that must be stored are
-    stored.
+    A stocking whose cost is not higher. It leaves no more of the bundles that must be stored than
+    `stocking` does.
     """
     moves = _Moves(data, stocking)
     while moves.move_bundles() or moves.drop_pods():

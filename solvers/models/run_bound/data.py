@@ -72,9 +72,9 @@ class PickStations:
 
     @property
     def change_s(self) -> NDArray[np.float64]:
-        """Least time between the starts of a visit's last pick and the next visit's first pick.
+        """Least time from the last pick of a visit to the first pick of the next visit.
 
-        Shape (S,), in s.
+        Both picks are counted from their start. Shape (S,), in s.
         """
         return np.maximum(self.unit_transfer_s, self.unit_pick_s + self.changeover_s)
 

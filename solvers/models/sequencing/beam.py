@@ -7,8 +7,8 @@ lack the fewest SKUs come first. The second does the same, but only with orders 
 holds at least half of the SKUs. Plans are ranked by the total number of SKUs that their orders
 still lack; SKUs of open orders count twice, because an open order occupies a slot. All plans of a
 step are scored together, by one matrix product. The search is deterministic: ties go to the first
-kind of extension, then to the extended plan that ranked higher in the previous step, then to the
-pod with the lower index.
+kind of extension, then to the extension of the plan that ranked higher in the previous step, then
+to the pod with the lower index.
 """
 
 from __future__ import annotations

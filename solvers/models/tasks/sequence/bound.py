@@ -65,9 +65,9 @@ def from_robots(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return times of the drives from the robots' initial positions to the pods of the tasks.
 
-    A robot that carries a pod first stores this pod, at the place for which the whole drive is
-    shortest. Its *storing time* is the duration of the drive to the nearest place; it is 0 for a
-    robot that carries no pod.
+    If a robot carries a pod, it stores this pod before it fetches the next one; the place is the
+    one that makes the whole drive shortest. The *storing time* of such a robot is the duration of
+    the drive to the storage location nearest to it; that of other robots is 0.
 
     Parameters
     ----------
