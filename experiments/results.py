@@ -28,7 +28,7 @@ def load(folder: str | Path, *, table: str = "footprint") -> pd.DataFrame:
     folder
         Folder of the experiment's results.
     table
-        `footprint`, or one of the tables that the entry `keep` of the design lists.
+        `footprint`, or a table named in the entry `keep` of the design.
 
     Returns
     -------

@@ -43,9 +43,9 @@ class DecisionPhase:
 
     The order of the steps is: answers of optimisers, MM, arrivals, SA, RPS, ROA, POA, late binding,
     PPS, PSA, CA, TA. After each step, the first due step in this order comes next. The controllers
-    of PPS, PSA and repositioning decide only when TA asks them. In the steps PPS and PSA, the
-    controllers of these problems can only ask optimisers. The step TA is also due at the times that
-    the controller of repositioning specifies.
+    of PPS, PSA and repositioning decide only when TA asks them. In the steps PPS and PSA, these
+    controllers take no decisions, but may put questions to optimisers. The step TA is also due at
+    the times that the controller of repositioning specifies.
 
     Attributes
     ----------

@@ -162,7 +162,7 @@ class Readings:
     def call_times_s(self) -> NDArray[np.float64]:
         """Return the wall time of each call of the planner since the last reset, in seconds.
 
-        A per-leg planner is called for one robot, a rolling planner for all driving robots.
+        A trip planner is called for one robot, a rolling planner for all driving robots.
         """
         return self._core.call_times() / 1e9
 

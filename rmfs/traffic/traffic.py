@@ -292,10 +292,9 @@ class Traffic(Readings):
     ) -> None:
         """Let plans of trips take time from now on; a robot departs when its plan is ready.
 
-        This is possible only with planners that plan one trip at a time (planners per leg). A plan
-        is made around the reservations that exist when planning begins. The robot departs no
-        earlier than the end of the planning time, but its route is reserved as soon as planning
-        begins.
+        This is possible only with trip planners, which plan one trip at a time. A plan is made
+        around the reservations that exist when planning begins. The robot departs no earlier than
+        the end of the planning time, but its route is reserved as soon as planning begins.
 
         Parameters
         ----------

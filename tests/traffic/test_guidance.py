@@ -246,9 +246,9 @@ def test_costs_out_of_range_are_not_written(hall: Layout, tmp_path: Path) -> Non
     assert not list(tmp_path.glob("g.*"))
 
 
-def test_only_planners_per_leg_use_guidance(hall: Layout) -> None:
+def test_only_trip_planners_use_guidance(hall: Layout) -> None:
     far = planner_settings(choose(Problem.PP, {"name": "far"}, "test"), 1)
-    with pytest.raises(ValueError, match="only planners per leg"):
+    with pytest.raises(ValueError, match="only trip planners"):
         Traffic(hall, planner=far._replace(guidance=((0, 1, 1.0),)))
     with pytest.raises(InputError, match=r"unknown key pp\.guidance"):
         choose(Problem.PP, {"name": "far", "guidance": "g.json"}, "test")

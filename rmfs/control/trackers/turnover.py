@@ -46,7 +46,7 @@ class TurnoverParameters(Parameters):
 
     @classmethod
     def of(cls, parameters: TurnoverParameters) -> TurnoverParameters:
-        """Extract the parameters of turnover classes from those of a rule."""
+        """Extract the parameters of this class from a rule's parameters, which include them."""
         names = TurnoverParameters.model_fields
         return TurnoverParameters(**{name: getattr(parameters, name) for name in names})
 

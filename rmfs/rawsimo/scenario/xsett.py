@@ -63,8 +63,8 @@ def read_xsett(path: Path) -> ImportedSettings:
     Raises
     ------
     InputError
-        If the file is not a settings file or contains an invalid value, or a file to which it
-        refers is missing.
+        If the file is not a settings file, if it contains an invalid value, or if it refers to a
+        file that is missing.
     """
     notes: list[str] = []
     settings = Settings(read_root(path, ROOT), path, notes)

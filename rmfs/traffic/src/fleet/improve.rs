@@ -30,14 +30,14 @@ impl Fleet {
     /// Tries to improve the plans that have just been made.
     pub(super) fn improve(&mut self) {
         let fresh = std::mem::take(&mut self.fresh);
-        if self.per_leg.improvement() == 0 {
+        if self.trip_planner.improvement() == 0 {
             return;
         }
         for robot in fresh {
             let others = if self.is_late(robot) { self.in_front_of(robot) } else { Vec::new() };
             if !others.is_empty() {
                 let members: Vec<u32> = std::iter::once(robot).chain(others).collect();
-                let effort = self.per_leg.improvement();
+                let effort = self.trip_planner.improvement();
                 if self.replan_together(&members, effort) {
                     self.counters.improvements += 1;
                 }
@@ -157,8 +157,9 @@ impl Fleet {
     }
 
     fn plan_again(&mut self, agent: &Agent) -> Option<Vec<Move>> {
-        let Fleet { network, kinds, robots, table, pathfinder, costs, per_leg, guidance, .. } =
-            self;
+        let Fleet {
+            network, kinds, robots, table, pathfinder, costs, trip_planner, guidance, ..
+        } = self;
         let guidance = guidance.as_ref();
         let holder = table.final_holder(network.resource[agent.goal as usize]);
         if holder.is_some_and(|holder| holder != agent.robot) {
@@ -166,7 +167,7 @@ impl Fleet {
         }
         let mut scene =
             Scene { now: self.now, network, kinds, robots, table, pathfinder, costs, guidance };
-        let answer = per_leg.plan(&mut scene, std::slice::from_ref(agent)).pop();
+        let answer = trip_planner.plan(&mut scene, std::slice::from_ref(agent)).pop();
         let Some(Answer::Way(mut moves)) = answer else { return None };
         postpone(network, table, &kinds[agent.kind as usize], &mut moves);
         Some(moves)

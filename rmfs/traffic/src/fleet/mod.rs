@@ -153,10 +153,10 @@ pub struct Fleet {
     /// Whether a pod is stored at each waypoint.
     stored: Vec<bool>,
     budget: u64,
-    /// Extra costs of edges for the planner per leg.
+    /// Extra costs of edges for the trip planner.
     guidance: Option<Guidance>,
     /// Plans whole legs; with a rolling planner, only moves within queues.
-    per_leg: Box<dyn Planner>,
+    trip_planner: Box<dyn Planner>,
     rolling: Option<Rolling>,
     /// Lateness of motions, if they can be late.
     lateness: Option<Lateness>,
@@ -196,15 +196,16 @@ impl Fleet {
         if let Some(robot) = robots.iter().position(|robot| !known(&robot)) {
             return Err(format!("robot {robot} has no waypoint, or no kind"));
         }
-        let (per_leg, rolling): (Box<dyn Planner>, _) = match Rolling::of(planner, robots.len()) {
-            Ok(rolling) => {
-                (Box::new(TimeWindows { budget, ..TimeWindows::default() }), Some(rolling))
-            }
-            Err(per_leg) => (per_leg, None),
-        };
+        let (trip_planner, rolling): (Box<dyn Planner>, _) =
+            match Rolling::of(planner, robots.len()) {
+                Ok(rolling) => {
+                    (Box::new(TimeWindows { budget, ..TimeWindows::default() }), Some(rolling))
+                }
+                Err(trip_planner) => (trip_planner, None),
+            };
         let mut fleet = Self {
             pathfinder: Pathfinder::new(&network),
-            per_leg,
+            trip_planner,
             rolling,
             guidance: None,
             lateness: None,
@@ -257,7 +258,7 @@ impl Fleet {
     /// If there is no such edge, or the planner is rolling.
     pub fn set_guidance(&mut self, edges: &[(u32, u32, u32)]) -> Result<(), String> {
         if self.rolling.is_some() {
-            return Err("only planners per leg use guidance".into());
+            return Err("only trip planners use guidance".into());
         }
         self.guidance = guidance(&self.network, edges)?;
         Ok(())

@@ -47,7 +47,16 @@ impl Fleet {
     fn plan_untimed(&mut self, robot: u32, goal: u32, effort: Effort, keep: usize) -> bool {
         self.settle(robot);
         let Fleet {
-            network, kinds, robots, table, pathfinder, costs, per_leg, pace, guidance, ..
+            network,
+            kinds,
+            robots,
+            table,
+            pathfinder,
+            costs,
+            trip_planner,
+            pace,
+            guidance,
+            ..
         } = self;
         let guidance = guidance.as_ref();
         let state = &robots[robot as usize];
@@ -84,7 +93,7 @@ impl Fleet {
         let mut agent = agent_after(kept, now);
         let (begun, labels) = (Instant::now(), pathfinder.expansions);
         let mut scene = Scene { now, network, kinds, robots, table, pathfinder, costs, guidance };
-        let mut answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
+        let mut answer = trip_planner.plan(&mut scene, std::slice::from_ref(&agent)).pop();
         let mut awaited = 0;
         let mut could_depart = agent.ready;
         if let Some(pace) = &mut pace {
@@ -99,7 +108,7 @@ impl Fleet {
                 agent = agent_after(kept, until);
                 let mut scene =
                     Scene { now, network, kinds, robots, table, pathfinder, costs, guidance };
-                answer = per_leg.plan(&mut scene, std::slice::from_ref(&agent)).pop();
+                answer = trip_planner.plan(&mut scene, std::slice::from_ref(&agent)).pop();
             }
             let turn = pace.turn_of(robot).expect("its turn");
             could_depart = turn.could_depart(stop_after(state, kept).2);

@@ -45,7 +45,7 @@ pub struct Wishes {
 }
 
 impl Rolling {
-    /// State without proposals; returns the planner itself if it works per leg.
+    /// State without proposals; returns the planner itself if it is a trip planner.
     pub fn of(planner: Box<dyn Planner>, robots: usize) -> Result<Self, Box<dyn Planner>> {
         let Rhythm::Rolling { period, runs } = planner.rhythm() else { return Err(planner) };
         Ok(Self {

@@ -45,7 +45,7 @@ struct Saved<'a> {
     retry_due: bool,
     agenda: Cow<'a, Agenda>,
     outbox: Cow<'a, [Event]>,
-    per_leg: Vec<u8>,
+    trip_planner: Vec<u8>,
     rolling: Option<(Cow<'a, Wishes>, Vec<u8>)>,
     lateness: Cow<'a, Option<Lateness>>,
     pace: Cow<'a, Option<Pace>>,
@@ -79,7 +79,7 @@ impl Fleet {
             retry_due: self.retry_due,
             agenda: Cow::Borrowed(&self.agenda),
             outbox: Cow::Borrowed(&self.outbox),
-            per_leg: self.per_leg.remembered()?,
+            trip_planner: self.trip_planner.remembered()?,
             rolling: rolling
                 .map(|own| remembered(own).map(|bytes| (Cow::Borrowed(&own.wishes), bytes)))
                 .transpose()?,
@@ -114,14 +114,14 @@ impl Fleet {
         {
             return Err("the saved traffic is that of other robots or another planner".into());
         }
-        let mut per_leg = self.per_leg.clone();
-        per_leg.remember(&saved.per_leg)?;
+        let mut trip_planner = self.trip_planner.clone();
+        trip_planner.remember(&saved.trip_planner)?;
         let mut rolling = self.rolling.clone();
         if let (Some(own), Some((wishes, remembered))) = (&mut rolling, saved.rolling) {
             own.planner.remember(&remembered)?;
             own.wishes = wishes.into_owned();
         }
-        (self.per_leg, self.rolling) = (per_leg, rolling);
+        (self.trip_planner, self.rolling) = (trip_planner, rolling);
         let network = Arc::make_mut(&mut self.network);
         for node in 0..network.nodes as u32 {
             network.set_closed(node, false);

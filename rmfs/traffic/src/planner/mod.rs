@@ -1,6 +1,6 @@
 //! Path planners: one trait, and the methods behind it.
 //!
-//! There are two rhythms. A planner *per leg* gives a robot its whole way when it receives a
+//! There are two rhythms. A *trip* planner gives a robot its whole way when it receives a
 //! destination, free of conflict with everything granted before. A *rolling* planner is called
 //! repeatedly for all robots; it returns proposals, of which the fleet grants a few straight runs
 //! at a time, when the robot is at rest and they are free (`fleet/rolling.rs`). In either case only
@@ -47,11 +47,11 @@ pub struct Scene<'a> {
     pub network: &'a Network,
     pub kinds: &'a [Kind],
     pub robots: &'a [Robot],
-    /// The reservations granted; for a planner per leg, without those of the robot itself.
+    /// The reservations granted; for a trip planner, without those of the robot itself.
     pub table: &'a Table,
     pub pathfinder: &'a mut Pathfinder,
     pub costs: &'a mut Cache,
-    /// Extra costs of edges, which planners per leg add to times.
+    /// Extra costs of edges, which trip planners add to times.
     pub guidance: Option<&'a Guidance>,
 }
 
@@ -75,8 +75,8 @@ pub struct Agent {
 /// When a planner is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Rhythm {
-    /// Once for each leg, for one robot at a time.
-    PerLeg,
+    /// Once for each trip, for one robot at a time.
+    PerTrip,
     /// For all robots that drive, when one of them needs a plan, but not before `period` has passed
     /// since the last call. At most `runs` runs of a robot's proposal are granted at once.
     Rolling { period: Us, runs: usize },
@@ -104,7 +104,7 @@ pub trait Planner: Resumable + Debug + Send + Sync {
     /// When it is called.
     fn rhythm(&self) -> Rhythm;
 
-    /// Planners per leg: maximum number of labels for each robot of a group when plans are
+    /// Trip planners: maximum number of labels for each robot of a group when plans are
     /// improved; 0 for never.
     fn improvement(&self) -> u64 {
         0
@@ -112,7 +112,7 @@ pub trait Planner: Resumable + Debug + Send + Sync {
 
     /// Plans ways for agents; returns one answer per agent.
     ///
-    /// A planner per leg returns a way to the goal that is free in the scene's table and ends where
+    /// A trip planner returns a way to the goal that is free in the scene's table and ends where
     /// the robot can stay; a rolling planner returns proposals.
     fn plan(&mut self, scene: &mut Scene, agents: &[Agent]) -> Vec<Answer>;
 }

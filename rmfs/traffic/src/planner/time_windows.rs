@@ -8,7 +8,7 @@ use crate::units::FOREVER;
 use super::swift::{Load, Swift, Urgency, Waiting};
 use super::{Agent, Answer, Planner, Rhythm, Scene};
 
-/// Plans each leg once around the windows that others have reserved.
+/// Plans each trip once around the windows that others have reserved.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TimeWindows {
     /// Maximum number of labels of a search before the robot waits until all planned motion is
@@ -82,7 +82,7 @@ impl TimeWindows {
 
 impl Planner for TimeWindows {
     fn rhythm(&self) -> Rhythm {
-        Rhythm::PerLeg
+        Rhythm::PerTrip
     }
 
     fn improvement(&self) -> u64 {
