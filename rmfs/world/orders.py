@@ -104,7 +104,7 @@ class Order:
         return sum((part.lines for part in self.parts), self.lines)
 
     def take_over(self, lines: tuple[OrderLine, ...]) -> None:
-        """Move lines of another order to this one; none of their units may be bound to a pod."""
+        """Move lines of another order, which has no slot yet, to this one."""
         giver = lines[0].order
         giver.lines = tuple(line for line in giver.lines if line not in lines)
         self.lines += lines
@@ -112,7 +112,8 @@ class Order:
             line.order = self
         for order, sign in ((giver, -1), (self, 1)):
             order.open_units += sign * sum(line.open_units for line in lines)
-            order.unpicked_units += sign * sum(line.open_units for line in lines)
+            # in a pool, units are bound to pods before the order has a slot
+            order.unpicked_units += sign * sum(line.units for line in lines)
 
     def cut(self, keep: Mapping[int, int]) -> None:
         """Reduce the units, which must not be bound to pods; remove lines left without units.

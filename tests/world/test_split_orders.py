@@ -110,6 +110,24 @@ def test_what_is_left_of_an_order_joins_its_part_out_of_the_pool(situation: Situ
     verify(world, [order, part])
 
 
+@pytest.mark.parametrize("bound", [1, 2])
+def test_units_bound_to_a_pod_in_the_pool_join_the_part_as_well(
+    situation: Situation, bound: int
+) -> None:
+    """A pod is on its way with one or both of the queued units: the part still lacks three."""
+    world = situation.world
+    order = situation.order(s1=1, s2=2)
+    part = world.assign_lines(order, 0, [1])
+    world.queue_order(order, 0)
+    situation.stock(1, s2=bound)
+    task = world.start_pick(world.robots[0], 1, 0)
+    assert world.extend_queued(task, order, whole=False) == bound
+    assert world.assign_order(order, 0) is part
+    assert (part.open_units, part.unpicked_units) == (3 - bound, 3)
+    assert (order.open_units, order.unpicked_units) == (0, 0)
+    verify(world)
+
+
 def test_times_and_lines_of_the_whole(situation: Situation) -> None:
     """Assigned with its first line."""
     world = situation.world
