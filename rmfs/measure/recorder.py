@@ -197,6 +197,9 @@ class Recorder(Observer):
         self.end_s = time_s
         if not self.samples or self.samples[-1][0] < time_s:
             self.sampled(time_s)
+        for call in self.questions:  # answers that take effect after the end count as well
+            if call.completed_us < 0:
+                self.optimiser_answered(call)
         self.energy.ended()
         self.packing.ended(time_s)
         self.pickers.ended(time_s)

@@ -150,6 +150,19 @@ def test_a_recorded_run_is_replayed_to_the_last_bit_without_a_solver(tmp_path, m
         whole(f"replay={folder}", seed=2, more=[sleep])
 
 
+def test_a_replay_knows_the_answers_that_come_after_the_end_of_the_run(tmp_path) -> None:
+    """Their gaps count in the recorded run, and so they do in the replay."""
+    recorded = whole("fixed=45")
+    late = recorded.recorder.questions[-1]
+    assert late.completed_us < 0
+    assert late.answer.gap_abs > 0
+    folder = tmp_path / "run"
+    write_run(recorded, folder)
+    replayed = whole(f"replay={folder}")
+    assert replayed.recorder.questions[-1].answer.gap_abs == late.answer.gap_abs
+    assert repeating(replayed).equals(repeating(recorded))
+
+
 def test_work_repeats() -> None:
     rates = (["pacing", "seconds_per_unit"], 0.05)
     first, second = (whole("work", more=[rates]) for _ in range(2))

@@ -48,8 +48,6 @@ class Replay:
         row = self._recorded(call)
         completed_us = int(row["completed_us"])
         call.outcome, call.failure = Outcome(row["outcome"]), row["failure"]
-        if completed_us < 0:
-            return
         if row["status"]:
             call.answer = Answer(
                 solution=from_text(row["solution"]) if row["solution"] else None,
@@ -63,7 +61,8 @@ class Replay:
                 built=row["built"],
                 scale=row["scale"],
             )
-        self._give(call, completed_us)
+        if completed_us >= 0:
+            self._give(call, completed_us)
 
     def limit_us(self, now_us: int) -> int:
         """Return no limit, as all answers are known."""
