@@ -162,3 +162,6 @@ class Trigger(IntEnum):
     """A robot, with or without a pod, reached the head of a station's queue [station]."""
     ORDER_QUEUED = 16
     """An order of the backlog joined the pool of a pick station [Order]."""
+    ORDER_CUT = 17
+    """Units that are not in stock were cut from an order of the backlog, which stock can now serve
+    [Order]."""

@@ -29,6 +29,10 @@ class Triggers(Observer):
         """Signal that a new order can be assigned."""
         self._signal(Trigger.NEW_ORDER, order)
 
+    def order_cut(self, order: Order) -> None:
+        """Signal that an order has lost the units that kept it from being assigned."""
+        self._signal(Trigger.ORDER_CUT, order)
+
     def order_assigned(self, order: Order) -> None:
         """Signal that an order was assigned and may need pods."""
         self._signal(Trigger.ORDER_ASSIGNED, order)

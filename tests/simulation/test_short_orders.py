@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from doubles import Situation
+from hand_made import HandMade
 
 import rmfs
 from rmfs.errors import InputError
@@ -153,3 +154,30 @@ def test_a_fork_gives_up_the_same_orders(policy):
     original, forked = run.result().footprint[columns], fork.result().footprint[columns]
     assert forked.equals(original)
     assert original["units_not_delivered"] > 0
+
+
+JOINT = {"poa": {"name": "dummy"}, "pps": {"name": "dummy"}}
+
+
+@pytest.mark.parametrize(
+    "rules",
+    [
+        {},
+        {"poa": {"name": "queue"}},
+        {"poa": {"name": "pile-on"}, "pps": {"name": "dummy"}},
+        {**JOINT, "ta": {"name": "pile-on"}},
+        {**JOINT, "ta": {"name": "planning"}},
+    ],
+    ids=["default", "queue", "poa pile-on", "ta pile-on", "planning"],
+)
+def test_an_order_that_can_now_be_served_is_assigned_at_once(rules):
+    """It lacks SKU 1 and is cut at 51 s; nothing else ever happens in this warehouse."""
+    made = HandMade(
+        {"robots": 1}, {"orders": {"shortage": {"policy": "partial", "after_s": 50.0}}}, **rules
+    )
+    made.stock(0, s0=1)
+    made.order(1.0, s0=1, s1=1)
+    made.run()
+    (order,) = made.ledger.orders.values()
+    assert (order.assigned_s, order.units_cut) == (51.0, 1)
+    assert order.completed_s < 100.0

@@ -31,6 +31,7 @@ class PickOrderAssignment(Controller[P]):
         {
             Trigger.START,
             Trigger.NEW_ORDER,
+            Trigger.ORDER_CUT,
             Trigger.ORDER_COMPLETED,
             Trigger.BUNDLE_STORED,
             Trigger.STATION_SWITCHED,

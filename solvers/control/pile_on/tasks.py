@@ -83,6 +83,7 @@ _ASKS: dict[Trigger, AsksTasks] = {
     Trigger.POD_AT_STATION: "pod-at-station",
     Trigger.ROBOT_FREE: "robot-free",
     Trigger.NEW_ORDER: "new-order",
+    Trigger.ORDER_CUT: "new-order",
 }
 
 
@@ -107,12 +108,13 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     decides: ClassVar[frozenset[Problem]] = frozenset({Problem.POA, Problem.PPS})
     subscriptions = WORK | {
         Trigger.NEW_ORDER,
+        Trigger.ORDER_CUT,
         Trigger.ORDER_COMPLETED,
         Trigger.BUNDLE_STORED,
         Trigger.STATION_SWITCHED,
         Trigger.POD_AT_STATION,
     }
-    hears = frozenset({Trigger.NEW_ORDER, Trigger.POD_AT_STATION, Trigger.ROBOT_FREE})
+    hears = frozenset(_ASKS)
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.pile_on.question",)
 
     def __init__(
@@ -132,10 +134,11 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     def hear(self, trigger: Trigger, subject: Any) -> None:
         """Record an event in `triggers`, after which the model may be asked.
 
-        A new order is recorded only if a robot is resting.
+        A new order, or one that has lost units, is recorded only if a robot is resting.
         """
-        asks = _ASKS[trigger] in self.parameters.triggers
-        self._changed |= asks and (trigger is not Trigger.NEW_ORDER or bool(self.view.resting))
+        kind = _ASKS[trigger]
+        asks = kind in self.parameters.triggers
+        self._changed |= asks and (kind != "new-order" or bool(self.view.resting))
 
     def next_event_s(self) -> float:
         """Return when a question may next be asked, in s; inf if an event has to occur first."""

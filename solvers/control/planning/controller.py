@@ -65,12 +65,15 @@ class PlanningControl(JointAllocation[PlanningParameters]):
     decides: ClassVar[frozenset[Problem]] = frozenset({Problem.POA, Problem.PPS})
     subscriptions = WORK | {
         Trigger.NEW_ORDER,
+        Trigger.ORDER_CUT,
         Trigger.ORDER_COMPLETED,
         Trigger.BUNDLE_STORED,
         Trigger.STATION_SWITCHED,
         Trigger.POD_AT_STATION,
     }
-    hears = frozenset({Trigger.NEW_ORDER, Trigger.POD_AT_STATION, Trigger.ROBOT_FREE})
+    hears = frozenset(
+        {Trigger.NEW_ORDER, Trigger.ORDER_CUT, Trigger.POD_AT_STATION, Trigger.ROBOT_FREE}
+    )
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.planning.question",)
 
     def __init__(
