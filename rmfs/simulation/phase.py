@@ -83,6 +83,8 @@ class DecisionPhase:
         self._half_told: list[Call] = []
         self._starting: Robot | None = None
         self._interrupted = 0
+        # whether this step TA, if the outside interrupts it, has done what comes before TA is asked
+        self._is_secured = False
         self._applying: Applying
         self._arrivals: ArrivalProcess
         self._steps: dict[int, Callable[[], Question | None]]
@@ -146,6 +148,7 @@ class DecisionPhase:
     def take_over(self, problem: Problem, controller: Controller[Any]) -> None:
         """Install a given controller; from now on, no problem is decided outside the simulation."""
         self.outside.problems, self.outside.pending = frozenset(), None
+        self._is_secured = False
         self._controllers.put(problem, controller)
         self._alarms.cancel(problem)
         self._due.connect()
@@ -223,15 +226,16 @@ class DecisionPhase:
         if outside.doing is not None:
             self.do_outside()
             return Question(Problem.TA, "turn")
-        if self._guard is not None:
-            self._guard.secure(self._consult)
-        if self._visits.controllers:
-            self._visits.give()
+        if not self._is_secured:
+            if self._guard is not None:
+                self._guard.secure(self._consult)
+                outside.begin_attempt()
+            if self._visits.controllers:
+                self._visits.give()
+            self._is_secured = bool(outside.problems)
         outside.taken = 0  # all that was answered in this attempt is asked again, in its order
         if world.asking or outside.problems:
             self._start_prepared()
-        if outside.taken:
-            outside.drop_taken()
         rule = self._controllers.installed[Problem.TA]
         orders_too = Problem.POA in rule.decides
         overdue = Problem.TA in self._alarms.overdue
@@ -251,6 +255,7 @@ class DecisionPhase:
         return None
 
     def _tasks_given(self) -> None:
+        self._is_secured = False
         alarms = self._alarms
         if alarms.overdue or Problem.REPOSITIONING in alarms.punctual:
             alarms.asked(Problem.REPOSITIONING)
@@ -263,6 +268,7 @@ class DecisionPhase:
             robots += [robot for robot in world.resting.values() if robot.prepared]
         for robot in robots:
             self._dispatch.start_prepared(robot, self._consult)
+            self.outside.drop_taken()
 
     def prepare(self, decision: say.Prepare, call: Call | None) -> None:
         """Record tasks that a robot is to do later; if it is free, start the first possible one."""

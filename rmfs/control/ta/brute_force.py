@@ -87,7 +87,7 @@ class BruteForce(Solo[BruteForceParameters]):
             if robot.pod < 0:
                 yield self.to_rest(robot)
             else:
-                yield from self._park(robot, np.zeros(len(view.storage.places)))
+                yield from self._park(robot)
         elif robot.pod in (-1, job.pod):
             yield self._bring(robot, job)
         else:
@@ -108,20 +108,30 @@ class BruteForce(Solo[BruteForceParameters]):
             robot = keeper_of(self.view, robot, job.pod)
         return bring(self.view, robot, job.pod, job.station)
 
-    def _park(self, robot: Robot, on_s: NDArray[np.float64]) -> Iterator[Park]:
-        """Park where the time to drive to the place plus `on_s` is least.
+    def place(self, robot: Robot, on_s: NDArray[np.float64] | float = 0.0) -> int:
+        """Find the empty place for which the time to drive there plus `on_s` is least.
 
         Parameters
         ----------
         on_s
             Time from each place to the next destination, in s, shape (L,).
+
+        Returns
+        -------
+        int
+            The place (waypoint), or -1 if there is none.
         """
         storage = self.view.storage
         there = self.view.travel.away(robot.waypoint, loaded=True)[storage.places]
         total = np.where(storage.is_empty, there + on_s, inf)
         best = int(total.argmin())
-        if total[best] < inf:
-            yield Park(robot, int(storage.places[best]))
+        return int(storage.places[best]) if total[best] < inf else -1
+
+    def _park(self, robot: Robot, on_s: NDArray[np.float64] | float = 0.0) -> Iterator[Park]:
+        """Park at the best place, if there is one; see `place`."""
+        place = self.place(robot, on_s)
+        if place >= 0:
+            yield Park(robot, place)
 
     def _best(self, robot: Robot, consult: Consult) -> _Job | None:
         """Find the best job of the present kind or, if there is none, of the other."""

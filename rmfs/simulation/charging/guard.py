@@ -65,6 +65,7 @@ class EnergyGuard:
         full_share = batteries.given.full_share
         batteries.enough_share = min(least_j / batteries.capacity_j, full_share)
         self._safe_until_s = [0.0] * len(view.robots)
+        self._left: list[Robot] | None = None
 
     def begin(self) -> None:
         """Schedule the first check of all levels."""
@@ -74,12 +75,18 @@ class EnergyGuard:
         """Send free and resting robots to charge if their energy might not suffice for a task.
 
         This method must be called before tasks are assigned. A robot that carries a pod stores the
-        pod first.
+        pod first. If `consult` has to wait for an answer, the next call goes on with the same
+        robot.
         """
         view = self._view
-        for robot in [*view.asking.values(), *view.resting.values()]:
+        if self._left is None:
+            self._left = [*view.asking.values(), *view.resting.values()]
+        while self._left:
+            robot = self._left[0]
             if view.now_s >= self._safe_until_s[robot.index]:
                 self._secure(robot, consult)
+            del self._left[0]
+        self._left = None
 
     def _secure(self, robot: Robot, consult: Consult) -> None:
         needed_j = self.needs.task_j if robot.pod < 0 else self.needs.visit_j

@@ -163,9 +163,13 @@ class RoutesControl(Asking[RoutesParameters]):
         given = parameters
         self._worth = Worth(given.unit_value_s, given.order_value_s, given.bundle_value_s)
 
-    def place_for(self, robot: Robot, consult: Consult) -> int:
-        """Return the nearest empty place."""
+    def place(self, robot: Robot) -> int:
+        """Return the nearest empty place; -1 if there is none."""
         return self._nearest.place(robot)
+
+    def place_for(self, robot: Robot, consult: Consult) -> int:
+        """Return the nearest empty place; -1 if there is none."""
+        return self.place(robot)
 
     def pod_for(self, robot: Robot, station: int, consult: Consult) -> int:
         """Return the best next pod of a station, or -1 if there is none."""
