@@ -65,8 +65,8 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
     Raises
     ------
     InputError
-        If layout, scenario, controllers, seed or pacing differ (the message names which), or if the
-        file cannot be read.
+        If layout, scenario, controllers, seed, pacing, measures or the recording of a trace differ
+        (the message names which), or if the file cannot be read.
     """
     try:
         with path.open("rb") as file:
@@ -83,13 +83,18 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
-    """Return, by name, the seed of a simulation and hashes of its other inputs and its pacing."""
+    """Return, by name, the seed of a simulation, and hashes of its other inputs, its pacing and
+    what is recorded of it.
+    """
+    measures = getattr(simulation, "measures", [])
     return {
         "layout": digest(simulation.layout),
         "scenario": digest(simulation.scenario.model_dump(mode="json")),
         "controllers": digest(simulation.controllers.to_table()),
         "seed": str(simulation.seed),
         "pacing": digest(simulation.pacing),
+        "choice of measures": digest(sorted(type(one).__qualname__ for one in measures)),
+        "choice of trace": str(getattr(simulation, "log", None) is not None),
     }
 
 

@@ -80,6 +80,29 @@ def test_other_inputs_are_refused(tmp_path: Path) -> None:
     assert resumed(tmp_path / "file", small()).now_s == 100.0
 
 
+class Mine(rmfs.Measure):
+    columns = (rmfs.Column("mine", "int64", "", "Nothing"),)
+
+
+@pytest.mark.parametrize(
+    ("saved", "resumed_with", "told"),
+    [
+        ({}, {"trace": True}, "choice of trace"),
+        ({"trace": True}, {}, "choice of trace"),
+        ({}, {"measures": [Mine]}, "choice of measures"),
+    ],
+)
+def test_what_was_not_recorded_until_the_checkpoint_is_refused(
+    tmp_path: Path, saved, resumed_with, told
+) -> None:
+    """At once, not when the run has ended."""
+    file = tmp_path / "file"
+    rmfs.Simulation("small", "small", set=SMALL, **saved).save(file)
+    assert not resumed(file, rmfs.Simulation("small", "small", set=SMALL, **saved)).ended
+    with pytest.raises(InputError, match=f"another {told};"):
+        resumed(file, rmfs.Simulation("small", "small", set=SMALL, **resumed_with))
+
+
 def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path, monkeypatch) -> None:
     file = tmp_path / "file"
     with pytest.raises(InputError, match="there is no checkpoint to resume from"):
