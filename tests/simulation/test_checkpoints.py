@@ -80,6 +80,25 @@ def test_other_inputs_are_refused(tmp_path: Path) -> None:
     assert resumed(tmp_path / "file", small()).now_s == 100.0
 
 
+def test_a_replay_is_resumed(tmp_path: Path) -> None:
+    recorded = small()
+    recorded.run()
+    recorded.result().save(tmp_path / "run")
+
+    def replay(seed: int = 2) -> rmfs.Simulation:
+        replayed = f"replay={tmp_path / 'run'}"
+        return rmfs.Simulation("small", "small", "pile-on", seed=seed, set=SMALL, pacing=replayed)
+
+    killed = replay()
+    killed.run_until(432.1)
+    killed.save(tmp_path / "file")
+    again = resumed(tmp_path / "file", replay())
+    again.run()
+    pd.testing.assert_series_equal(numbers(again.result()), numbers(recorded.result()))
+    with pytest.raises(InputError, match="belongs to a run with another pacing;"):
+        resumed(tmp_path / "file", small())
+
+
 class Mine(rmfs.Measure):
     columns = (rmfs.Column("mine", "int64", "", "Nothing"),)
 

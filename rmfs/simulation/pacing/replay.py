@@ -30,8 +30,13 @@ class Replay:
     waits = False
 
     def __init__(self, settings: ReplayPacing, answers: list[dict[str, Any]]) -> None:
+        self._settings = settings
         self._run = settings.run
         self._rows = answers
+
+    def digested(self) -> tuple[str, list[dict[str, Any]]]:
+        """Return the settings and the answers, by which checkpoints tell replays apart."""
+        return repr(self._settings), self._rows
 
     def begin(self, modules: Iterable[str], give: Callable[[Call, int], None]) -> None:
         """Store the callback for answers."""
