@@ -83,8 +83,9 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
-    """Return, by name, the seed of a simulation, and hashes of its other inputs, its pacing and
-    what is recorded of it.
+    """Return, by name, the seed of a simulation, and what else a resumed run must agree with it in.
+
+    The other values are hashes of inputs and pacing, and what is recorded of the run.
     """
     measures = getattr(simulation, "measures", [])
     return {
