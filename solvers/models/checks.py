@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+_FAR = 2**63
+
 
 class ModelError(ValueError):
     """An input array or parameter that the model cannot accept.
@@ -82,6 +84,9 @@ def integers(
         whole = raw.dtype.kind == "f" and bool(np.all(np.isfinite(raw) & (raw == np.rint(raw))))
         # An empty list has no kind of its own: NumPy calls it float.
         require(whole or raw.size == 0, field, "must hold whole numbers")
+    if raw.dtype.kind in "uf":
+        # beyond, the conversion would wrap around
+        require(bool(np.all(np.abs(raw.astype(np.float64)) < _FAR)), field, f"must be below {_FAR}")
     checked = raw.astype(np.int64, order="C")
     _within(field, checked, low, high)
     checked.setflags(write=False)

@@ -13,7 +13,7 @@ from enum import Enum
 from time import perf_counter
 from typing import Generic, TypeVar
 
-from rmfs.solvers.models.checks import number, require
+from rmfs.solvers.models.checks import integers, number, require
 
 V = TypeVar("V")
 V_co = TypeVar("V_co", covariant=True)
@@ -84,7 +84,7 @@ class Limits:
     Raises
     ------
     ModelError
-        If a limit is negative or not a number.
+        If a limit is negative or not a number, or `nodes` or `iterations` is not a whole number.
     """
 
     deterministic_s: float | None = None
@@ -94,10 +94,15 @@ class Limits:
     wall_guard_s: float | None = None
 
     def __post_init__(self) -> None:
-        for field in ("deterministic_s", "nodes", "iterations", "gap", "wall_guard_s"):
+        for field in ("deterministic_s", "gap", "wall_guard_s"):
             value = getattr(self, field)
             if value is not None:
                 number(f"limits.{field}", value, low=0)
+        for field in ("nodes", "iterations"):
+            value = getattr(self, field)
+            if value is not None:
+                whole = int(integers(f"limits.{field}", value, (), low=0))
+                object.__setattr__(self, field, whole)
 
 
 NO_LIMITS = Limits()
@@ -172,11 +177,13 @@ class Solution(Generic[V_co]):
     def gap(self) -> float:
         """Relative gap between objective and bound, ``|objective - bound| / |objective|``.
 
-        The gap is inf if there is no solution or no bound, and 0 if rounding puts the bound beyond
-        the objective.
+        The gap is inf if there is no solution or no bound. It is 0 if rounding puts the bound
+        beyond the objective, or if both are 0 up to `BOUND_TOLERANCE`.
         """
         if not self.found or math.isinf(self.bound):
             return math.inf
+        if max(abs(self.objective), abs(self.bound)) <= BOUND_TOLERANCE:
+            return 0.0
         distance = max(0.0, (self.objective - self.bound) * self.sense.value)
         return distance / max(abs(self.objective), GAP_FLOOR)
 
@@ -255,10 +262,13 @@ def solution_of_optimum(
 ) -> Solution[V]:
     """Create the `Solution` of an exact method for a minimisation problem.
 
+    The status is FEASIBLE if the bound shows that the method had to round the costs too coarsely to
+    prove the values optimal.
+
     Parameters
     ----------
     values
-        Optimal values; None if the problem is infeasible.
+        Optimal values, up to rounding; None if the problem is infeasible.
     objective
         The model's objective function.
     bound
@@ -276,7 +286,9 @@ def solution_of_optimum(
         return Solution(None, math.inf, math.inf, status, backend, wall_s, build_s, work)
     value = objective(values)
     bound = min(bound, value)
-    return Solution(values, value, bound, Status.OPTIMAL, backend, wall_s, build_s, work)
+    proven = value - bound <= BOUND_TOLERANCE * max(1.0, abs(value))
+    status = Status.OPTIMAL if proven else Status.FEASIBLE
+    return Solution(values, value, bound, status, backend, wall_s, build_s, work)
 
 
 WORK_UNITS = {

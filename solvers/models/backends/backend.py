@@ -145,8 +145,8 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) 
 def with_relaxed_bound(backend: Backend) -> Backend:
     """Return a back end that adds the bound of the linear relaxation if a limit ends its search.
 
-    The outcome then contains the larger of this bound and the solver's own bound. The work that
-    it states does not include the work for the relaxation.
+    The outcome then contains the larger of this bound and the solver's own bound; it is INFEASIBLE
+    if the relaxation is. The work that it states does not include the work for the relaxation.
 
     Parameters
     ----------
@@ -165,9 +165,11 @@ def with_relaxed_bound(backend: Backend) -> Backend:
         if outcome.status not in (Status.FEASIBLE, Status.LIMIT):
             return outcome
         relaxed = relax(program)
+        hopeless = outcome.x is None and relaxed.status is Status.INFEASIBLE
         return replace(
             outcome,
             bound=max(outcome.bound, relaxed.bound),
+            status=Status.INFEASIBLE if hopeless else outcome.status,
             wall_s=outcome.wall_s + relaxed.wall_s,
         )
 

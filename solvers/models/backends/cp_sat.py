@@ -4,9 +4,11 @@ One worker, a fixed seed and a limit in deterministic seconds (the solver's own 
 make results repeatable, whatever the load of the machine. The model is written directly into the
 solver's protocol buffer, row by row from the compressed matrix, in a few microseconds per row.
 
-CP-SAT needs integer costs. Fractional costs are rounded *down* to multiples of 1/1024 (a power of
-two, so that scaling is exact). As all columns are non-negative, the minimum with rounded costs
-never exceeds the true minimum, so the solver's bound remains valid.
+CP-SAT needs integer costs. Fractional costs are rounded *down* to multiples of 1/1024 or, if every
+cost is below 1, of 1/1024 of the largest (rounded to a power of two, so that scaling is exact). As
+all columns are non-negative, the minimum with rounded costs never exceeds the true minimum, so the
+solver's bound remains valid. CP-SAT reports bounds as floats, which are inexact above 2^53; there,
+the bound is lowered accordingly.
 """
 
 from __future__ import annotations
@@ -28,9 +30,12 @@ from rmfs.solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardErr
 
 NAME = "cp_sat"
 RESOLUTION = 1024
-"""Costs are rounded down to multiples of 1 / `RESOLUTION`."""
+"""Costs are rounded down to multiples of 1 / `RESOLUTION`, or finer if all costs are below 1."""
 
+_FINEST_BITS = 1000
 _FAR = 2**62
+_EXACT = 2**53
+"""Largest number up to which all whole numbers are floats."""
 
 
 def solve(
@@ -73,7 +78,7 @@ def solve(
     began = time.perf_counter()
     if (answer := trivial(program, NAME)) is not None:
         return answer
-    scale = 1 if bool(np.all(program.cost == np.rint(program.cost))) else RESOLUTION
+    scale = _scale(program.cost)
     model = _model(program, scale, start)
     solver = cp_model.CpSolver()
     configure(solver, limits, seed)
@@ -168,8 +173,17 @@ def check_guard(solver: cp_model.CpSolver, status: CpSolverStatus, limits: Limit
         raise WallGuardError(f"CP-SAT was stopped after {solver.wall_time:.1f} s")
 
 
+def _scale(cost: NDArray[np.float64]) -> float:
+    """Return the power of two by which costs are multiplied before they are rounded."""
+    if bool(np.all(cost == np.rint(cost))):
+        return 1.0
+    # the largest is in [2^(exponent - 1), 2^exponent)
+    _, exponent = math.frexp(float(np.abs(cost).max()))
+    return math.ldexp(RESOLUTION, min(max(0, 1 - exponent), _FINEST_BITS))
+
+
 def _model(
-    program: LinearProgram, scale: int, start: NDArray[np.float64] | None
+    program: LinearProgram, scale: float, start: NDArray[np.float64] | None
 ) -> cp_model.CpModel:
     """Write columns, rows, costs and start into the solver's protocol structure."""
     require(
@@ -196,7 +210,7 @@ def _model(
         linear.domain.extend((row_lower[row], row_upper[row]))
         begin = end
     cost = np.floor(program.cost * scale)
-    total = float(np.abs(cost) @ np.maximum(program.upper, 1.0))
+    total = _largest_sum(program, scale)
     require(total <= _FAR, "cost", f"adds up to {total:.1e}; CP-SAT counts to {_FAR:.1e} at most")
     paid = np.flatnonzero(cost)
     proto.objective.vars.extend(paid.tolist())
@@ -205,6 +219,11 @@ def _model(
         proto.solution_hint.vars.extend(range(program.columns))
         proto.solution_hint.values.extend(_whole("start", np.rint(start)))
     return model
+
+
+def _largest_sum(program: LinearProgram, scale: float) -> float:
+    """Return an upper bound on the absolute value of every sum of the solver's costs."""
+    return float(np.abs(np.floor(program.cost * scale)) @ np.maximum(program.upper, 1.0))
 
 
 def _whole(field: str, values: NDArray[np.float64]) -> list[int]:
@@ -220,7 +239,7 @@ def _outcome(
     program: LinearProgram,
     solver: cp_model.CpSolver,
     status: CpSolverStatus,
-    scale: int,
+    scale: float,
     began: float,
     built: float,
 ) -> Outcome:
@@ -238,7 +257,10 @@ def _outcome(
     bound = -math.inf
     if ended in (Status.OPTIMAL, Status.FEASIBLE):
         x = np.array(solver.response_proto.solution, dtype=np.float64)
-        bound = solver.best_objective_bound / scale + program.offset
+        bound = solver.best_objective_bound
+        if (total := _largest_sum(program, scale)) > _EXACT:
+            bound -= 4.0 * total / _EXACT
+        bound = bound / scale + program.offset
     elif ended is Status.INFEASIBLE:
         bound = math.inf
     return Outcome(

@@ -31,7 +31,7 @@ _LARGEST_COST = 2.0**40
 """Largest integer cost passed to OR-Tools, which multiplies costs by the number of nodes."""
 
 _FINEST = 1e6
-"""Maximum resolution of costs, in parts of a unit."""
+"""Maximum resolution of costs, in parts of a unit; finer if no cost reaches a unit."""
 
 _TINY = 2.0**-50
 
@@ -81,8 +81,9 @@ class Flow(NamedTuple):
 def min_cost_flow(network: Network) -> Flow | None:
     """Find a minimum-cost flow with OR-Tools' cost-scaling push-relabel algorithm.
 
-    Costs are rounded to millionths, or more coarsely if a cost exceeds about a million. The solver
-    is exact for the rounded costs; the bound is valid for the unrounded ones.
+    Costs are rounded to millionths (of the largest cost if it is below 1), or more coarsely if a
+    cost exceeds about a million. The solver is exact for the rounded costs; the bound is valid for
+    the unrounded ones, and shows what rounding may have cost.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def min_cost_flow(network: Network) -> Flow | None:
         feasible = not network.supply.any()
         return Flow(np.zeros(0, np.int64), 0.0, 0.0) if feasible else None
     largest = float(np.abs(network.cost).max())
-    scale = min(_FINEST, _LARGEST_COST / largest) if largest else 1.0
+    scale = min(_FINEST / min(largest, 1.0), _LARGEST_COST / largest) if largest else 1.0
     whole = np.rint(network.cost * scale).astype(np.int64)
     solver = ortools_flow.SimpleMinCostFlow()
     arcs = solver.add_arcs_with_capacity_and_unit_cost(

@@ -3,7 +3,9 @@
 On one thread, HiGHS is deterministic. The limit of a mixed-integer program is a number of
 branch-and-bound nodes; as the work per node varies, `Outcome.work` counts simplex iterations. The
 bound that `solve` returns comes from floating-point LPs, so it is lowered by the relative tolerance
-`NUMERICAL_TOLERANCE`.
+`NUMERICAL_TOLERANCE`; that of a pure LP never exceeds the bound proven by the dual multipliers
+(`safe_bound`). If coefficients are huge, HiGHS may round integer columns wrongly, so integer
+programs with coefficients above `LARGEST` are refused.
 """
 
 from __future__ import annotations
@@ -18,10 +20,14 @@ from numpy.typing import NDArray
 
 from rmfs.solvers.models.backends.outcome import NUMERICAL_TOLERANCE, Outcome, Relaxation, trivial
 from rmfs.solvers.models.backends.safe_bound import safe_bound
+from rmfs.solvers.models.checks import require
 from rmfs.solvers.models.program import LinearProgram
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Status, WallGuardError
 
 NAME = "highs"
+LARGEST = 1e9
+"""Largest coefficient of an integer program, in absolute value."""
+
 _INTEGER_LIMIT = 2**31 - 1
 
 
@@ -53,12 +59,22 @@ def solve(
 
     Raises
     ------
+    ModelError
+        If the program has integer columns and a coefficient above `LARGEST`.
     WallGuardError
         If the solver was stopped by `limits.wall_guard_s`.
     """
     began = time.perf_counter()
     if (answer := trivial(program, NAME)) is not None:
         return answer
+    if program.integer.any():
+        largest = float(np.abs(program.coefficient).max(initial=0.0))
+        require(
+            largest <= LARGEST,
+            "coefficient",
+            f"is {largest:.1e}; HiGHS solves integer programs reliably up to {LARGEST:.0e}: "
+            "choose a larger unit",
+        )
     solver = highspy.Highs()
     _set_options(solver, limits, seed)
     solver.passModel(_lp(program))
@@ -106,10 +122,7 @@ def relax(
     built = time.perf_counter()
     solver.run()
     outcome = _outcome(relaxed, solver, began, built)
-    solution = solver.getSolution()
-    multipliers = np.zeros(program.rows)
-    if solution.dual_valid:
-        multipliers = np.array(solution.row_dual, dtype=np.float64)
+    multipliers = _multipliers(program, solver)
     return Relaxation(
         x=outcome.x,
         multipliers=multipliers,
@@ -201,13 +214,26 @@ def _outcome(program: LinearProgram, solver: highspy.Highs, began: float, built:
     )
 
 
+def _multipliers(program: LinearProgram, solver: highspy.Highs) -> NDArray[np.float64]:
+    """Return the dual value of each row; zeros if the solver has none."""
+    solution = solver.getSolution()
+    if not solution.dual_valid:
+        return np.zeros(program.rows)
+    return np.array(solution.row_dual, dtype=np.float64)
+
+
 def _bound(program: LinearProgram, solver: highspy.Highs) -> float:
     """The solver's lower bound, lowered by its tolerance."""
     info = solver.getInfo()
     if program.integer.any():
         raw = float(info.mip_dual_bound)
-    elif solver.getModelStatus() == highspy.HighsModelStatus.kOptimal:
-        raw = float(info.objective_function_value)
-    else:
-        raw = -math.inf
-    return raw - NUMERICAL_TOLERANCE * max(1.0, abs(raw)) if math.isfinite(raw) else -math.inf
+        return _lowered(raw) if math.isfinite(raw) else -math.inf
+    if solver.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+        return -math.inf
+    # small errors of reduced costs add up over columns with large ranges
+    proven = safe_bound(program, _multipliers(program, solver))
+    return min(_lowered(float(info.objective_function_value)), proven)
+
+
+def _lowered(bound: float) -> float:
+    return bound - NUMERICAL_TOLERANCE * max(1.0, abs(bound))

@@ -35,12 +35,16 @@ def solve_in_whole_pods(
 
     Returns
     -------
-    The allocation, never worse than the start.
+    The allocation, never worse than the start. The status is INFEASIBLE if the solver or the
+    relaxation `together` proves that there is none.
     """
     found = solve_by(backend, lambda: formulate(data), limits, seed=seed, start=start)
     if found.status is Status.INFEASIBLE:
         return found
     relaxed = relax(together(data))
+    if not found.found and relaxed.status is Status.INFEASIBLE:
+        wall_s = found.wall_s + relaxed.wall_s
+        return replace(found, bound=math.inf, status=Status.INFEASIBLE, wall_s=wall_s)
     bound = max(found.bound, relaxed.bound)
     whole = float(math.ceil(bound - _TOLERANCE)) if math.isfinite(bound) else 0.0
     proven = max(whole, pods_needed(data))

@@ -88,7 +88,8 @@ class Replenishment:
 
 def _negative(value: ArrayLike) -> ArrayLike:
     raw = np.asarray(value)
-    return -raw if raw.dtype.kind in "if" else value
+    # as floats: minus an unsigned number is a large one
+    return -raw.astype(np.float64) if raw.dtype.kind in "iufb" else value
 
 
 def _parts(rounding: np.ufunc, field: str, value: ArrayLike, count: int) -> NDArray[np.float64]:

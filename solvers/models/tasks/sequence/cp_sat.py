@@ -95,6 +95,8 @@ def solve(
         bound = math.inf
     else:
         bound = max(bound, solver.best_objective_bound / TICKS_PER_S)
+    if routes is None and math.isinf(bound):
+        status = Status.INFEASIBLE
     wall_s, build_s = perf_counter() - begin, built - begin
     return Solution(
         routes,

@@ -1,13 +1,16 @@
 """Every back end against enumeration on random small integer programs."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 
-from rmfs.solvers.models import Limits, ModelError, Status, WallGuardError
+from rmfs.solvers.models import Limits, ModelError, Solution, Status, WallGuardError
 from rmfs.solvers.models.backends import clarabel, cp_sat, highs
+from rmfs.solvers.models.backends.backend import with_relaxed_bound
 from rmfs.solvers.models.backends.safe_bound import safe_bound
+from rmfs.solvers.models.checks import integers
 from rmfs.solvers.models.program import LinearProgram, ProgramBuilder
 
 BACKENDS = {"cp_sat": cp_sat.solve, "highs": highs.solve}
@@ -180,3 +183,58 @@ def test_cp_sat_names_the_number_that_is_not_whole() -> None:
     fractional.columns(1, integer=False)
     with pytest.raises(ModelError, match="integer"):
         cp_sat.solve(fractional.build())
+
+
+def test_costs_of_any_size_are_compared() -> None:
+    """Costs far below 1/1024 are no zeros to CP-SAT: the cheaper of two columns is chosen."""
+    for unit in (1.0, 1e-3, 1e-6, 1e-9, 1e-200):
+        builder = ProgramBuilder()
+        columns = builder.columns(2, cost=[3 * unit, 2 * unit])
+        builder.rows(1, (0, columns, 1.0), lower=1.0)
+        outcome = cp_sat.solve(builder.build())
+        assert outcome.x.tolist() == [0.0, 1.0]
+        assert 2 * unit * (1 - 1 / 512) <= outcome.bound <= 2 * unit
+
+
+def test_highs_refuses_coefficients_that_its_tolerance_blurs() -> None:
+    """A millionth of a column, which counts as 0, times 4e10 would be 40,000 units."""
+    builder = ProgramBuilder()
+    columns = builder.columns(2)
+    builder.rows(1, (0, columns, [4e10, 1.0]), lower=1.0)
+    with pytest.raises(ModelError, match=r"coefficient: is 4\.0e\+10"):
+        highs.solve(builder.build())
+
+
+def test_a_search_stopped_at_once_says_so_if_the_relaxation_proves_there_is_nothing() -> None:
+    """Three rows want a column of their own, but there are two; the search may not begin."""
+    builder = ProgramBuilder()
+    columns = builder.columns((3, 2), upper=[[1.0, 1.0], [1.0, 0.0], [1.0, 0.0]])
+    builder.rows(3, (np.arange(3)[:, None], columns, 1.0), lower=1.0)
+    builder.rows(2, (np.arange(2), columns, 1.0), upper=1.0)
+
+    def stopped(program, limits, *, seed, start):
+        return replace(cp_sat.solve(program, limits), x=None, bound=-np.inf, status=Status.LIMIT)
+
+    outcome = with_relaxed_bound(stopped)(builder.build(), Limits(), seed=0, start=None)
+    assert (outcome.status, outcome.bound) == (Status.INFEASIBLE, np.inf)
+
+
+@pytest.mark.parametrize("value", [1e30, 2**64 - 1, 2.0**63])
+def test_whole_numbers_too_large_for_the_computer_are_refused(value: float) -> None:
+    with pytest.raises(ModelError, match="units: must be below"):
+        integers("units", [value], (None,))
+
+
+def test_limits_of_counts_are_whole() -> None:
+    assert Limits(nodes=2.0).nodes == 2
+    for field in ("nodes", "iterations"):
+        with pytest.raises(ModelError, match=f"limits.{field}: must hold whole numbers"):
+            Limits(**{field: 2.5})
+
+
+def test_the_gap_at_an_optimum_of_nothing_is_nothing() -> None:
+    """HiGHS states -1e-6 as the bound of 0: that is not a gap of 100,000 %."""
+    values = {"values": 0, "status": Status.OPTIMAL, "backend": "highs"}
+    assert Solution(objective=0.0, bound=-1e-6, **values).gap == 0.0
+    assert Solution(objective=1e-3, bound=0.0, **values).gap == 1.0
+    assert Solution(objective=2.0, bound=1.0, **values).gap == 0.5

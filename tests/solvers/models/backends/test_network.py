@@ -128,3 +128,15 @@ def test_costs_may_be_infinite_but_not_undefined() -> None:
             costs("c", wrong, (1, 1), low=0)
     with pytest.raises(ModelError, match="shape"):
         costs("c", [1.0], (1, 1))
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-7, 1e-12])
+@pytest.mark.parametrize("dear", [0, 1])
+def test_flows_take_the_cheaper_arc_however_small_its_cost(unit: float, dear: int) -> None:
+    """Of two arcs between two nodes, one costs a third less."""
+    cost = np.array([2.0, 2.0]) * unit
+    cost[dear] = 3.0 * unit
+    ends, one = np.zeros(2, np.int64), np.ones(2, np.int64)
+    flow = min_cost_flow(Network(ends, ends + 1, one, cost, np.array([1, -1])))
+    assert flow.units[dear] == 0
+    assert flow.bound == pytest.approx(2.0 * unit, rel=1e-5)

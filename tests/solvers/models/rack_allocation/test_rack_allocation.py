@@ -119,6 +119,14 @@ def test_empty_and_degenerate(solve) -> None:
     assert solve(RackAllocation([[2, 0]], [[1, 0]], [1])).status is Status.INFEASIBLE
 
 
+@pytest.mark.parametrize("method", EXACT)
+def test_stopped_at_once_it_states_no_finite_bound_if_there_is_no_allocation(method: str) -> None:
+    """Nine orders of one unit each share eight units; the solver may not begin."""
+    data = RackAllocation(np.ones((9, 1), int), [[4], [4]], [5, 4])
+    ended = EXACT[method](data, Limits(deterministic_s=0.0, nodes=0))
+    assert (ended.status, ended.bound) == (Status.INFEASIBLE, np.inf)
+
+
 @pytest.mark.parametrize(
     ("field", "change"),
     [

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from rmfs.solvers.models import Limits, ModelError, Status
+from rmfs.solvers.models.backends.backend import relax
 from rmfs.solvers.models.replenishment import (
     Replenishment,
     Stocking,
@@ -19,6 +20,7 @@ from rmfs.solvers.models.replenishment import (
     violations,
 )
 from rmfs.solvers.models.replenishment.polish import polished
+from rmfs.solvers.models.replenishment.program import Columns, program
 
 BACKENDS = {"cp_sat": cp_sat.solve, "highs": highs.solve}
 RULES = {"greedy": greedy.solve, "rounding": rounding.solve}
@@ -221,3 +223,26 @@ def test_violations_name_what_is_wrong() -> None:
     ]
     away = Stocking(np.array([0, -1]), np.array([-1]))
     assert violations(data, away) == ["a pod gets a bundle, but is brought to no station"]
+
+
+@pytest.mark.parametrize("kind", ["uint8", "bool", "int64", "float32"])
+def test_worth_of_any_number_type_is_worth(kind: str) -> None:
+    """A bundle worth 1 s in the pod, which comes anyway: the objective is -1."""
+    data = Replenishment(np.ones((1, 1), kind), [0.0], [1.0], [1.0], [[0.0]], [1.0])
+    for solve in (*BACKENDS.values(), *RULES.values()):
+        assert solve(data).objective == -1.0
+
+
+def test_bounds_of_relaxations_hold_for_tiny_costs() -> None:
+    """Reduced costs within the solver's tolerance add up over loads of hundreds of parts."""
+    for data, best in CASES:
+        tiny = Replenishment(
+            data.worth_s * 1e-6,
+            data.leave_s * 1e-6,
+            data.space,
+            data.pod_space,
+            data.trip_s * 1e-6,
+            data.station_space,
+        )
+        bound = relax(program(tiny, Columns.of(tiny), whole=False)).bound
+        assert bound <= best * 1e-6 + 1e-12

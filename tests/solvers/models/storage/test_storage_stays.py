@@ -189,3 +189,22 @@ def test_nothing_to_decide() -> None:
     homeless = Stays([0.0], [1.0], np.zeros((1, 0)), [])
     for solve in (highs.solve, cp_sat.solve, greedy.solve):
         assert solve(homeless).status is Status.INFEASIBLE
+
+
+def test_bounds_of_cp_sat_hold_beside_huge_costs() -> None:
+    """Sums above 2^53 are not exact in the solver's report; larger ones are refused."""
+    compared = 0
+    for seed in range(60):
+        data = random_stays(seed, 2)
+        huge = np.random.default_rng(seed).random(data.cost_s.shape) < 0.3
+        cost_s = np.where(huge & np.isfinite(data.cost_s), 1e15, data.cost_s)
+        data = Stays(data.begin_s, data.end_s, cost_s, data.capacity)
+        best = enumerated(data)
+        try:
+            solution = cp_sat.solve(data)
+        except ModelError as error:
+            assert "adds up to" in str(error)
+            continue
+        compared += huge.any() and not isinf(best)
+        assert solution.bound <= best + 1e-9
+    assert compared > 10

@@ -197,3 +197,25 @@ def test_violations_name_what_is_wrong() -> None:
     assert balance.violations(full, np.array([0])) == [
         "a station gets more robots than it has room for"
     ]
+
+
+@pytest.mark.parametrize("penalty", [1e9, 1e12, 1e15])
+def test_a_matching_beside_huge_costs_counts_as_optimal_only_if_it_is(penalty: float) -> None:
+    """The flow rounds costs more coarsely if one of them is huge."""
+    coarse = 0
+    for seed in range(60):
+        data = random_matching(seed)
+        rng = np.random.default_rng(seed)
+        leave = np.where(rng.random(len(data.leave_s)) < 0.4, penalty, data.leave_s)
+        data = Matching(data.travel_s, leave)
+        best, found = best_matching(data), matching.solve(data, "flow")
+        if isinf(best):
+            assert found.status is Status.INFEASIBLE
+            continue
+        assert found.bound <= best + 1e-9 * max(1.0, abs(best))
+        if found.status is Status.OPTIMAL:
+            assert found.objective == pytest.approx(best, rel=1e-5, abs=1e-5)
+        else:
+            assert found.status is Status.FEASIBLE
+            coarse += 1
+    assert coarse > 3 if penalty == 1e15 else coarse == 0

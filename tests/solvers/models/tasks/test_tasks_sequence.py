@@ -366,3 +366,14 @@ def test_violations_name_what_is_wrong() -> None:
     assert violations(data, Routes(((0, 1),), np.array([1, 0]), np.array([0])))[0].startswith(
         "robot_place must be -1"
     )
+
+
+def test_stopped_at_once_cp_sat_says_if_the_relaxation_proves_that_there_are_no_routes() -> None:
+    stopped = 0
+    for data, best in CASES:
+        ended = solve(data, "cp_sat", Limits(deterministic_s=0.0))
+        if isinf(ended.bound):
+            assert isinf(best)
+            assert ended.status is Status.INFEASIBLE
+            stopped += isinf(relaxed_bound(data))
+    assert stopped > 5
