@@ -14,6 +14,9 @@ Count = Annotated[int, pydantic.Field(ge=1)]
 Method = Literal["joint", "cp_sat", "greedy", "hadgs"]
 AsksPileOn = Literal["pod-at-station", "free-slot", "short-of-work"]
 
+_ONLY_JOINT = ("work_s", "pods_per_sku", "orders_per_slot")
+"""Parameters that limit the search of the method `joint`, but not that of `cp_sat`."""
+
 
 class JointParameters(SearchParameters):
     """Parameters shared by POA pile-on and TA pile-on, which use the same joint model."""
@@ -52,7 +55,8 @@ class JointParameters(SearchParameters):
     """Minimum time, in seconds, between two questions to the optimiser, so that one question covers
     several decisions."""
     work_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.02
-    """Limit of the search by CP-SAT in deterministic seconds, which are close to wall time."""
+    """With the method `joint`, limit of the search by CP-SAT in deterministic seconds, which are
+    close to wall time. The method `cp_sat` has no such limit, and refuses another value."""
     reward_s: NotNegative = 15.0
     """Value, in seconds of robot time, of each order (with `split`, of each line) that the pods of
     one station (present, under way or called) can serve completely."""
@@ -76,9 +80,11 @@ class JointParameters(SearchParameters):
     improve the bound. The bound is only recorded. With the pacing `work`, these steps take no
     simulated time."""
     pods_per_sku: Count = 4
-    """Number of pods that CP-SAT considers for each needed SKU at each station."""
+    """With the method `joint`, number of pods that CP-SAT considers for each needed SKU at each
+    station. The method `cp_sat` considers all, and refuses another value."""
     orders_per_slot: Count = 64
-    """Number of orders that CP-SAT considers for each free slot."""
+    """With the method `joint`, number of orders that CP-SAT considers for each free slot. The
+    method `cp_sat` considers all, and refuses another value."""
 
     @property
     def pruning(self) -> Pruning:
@@ -106,6 +112,17 @@ class JointParameters(SearchParameters):
             raise ValueError(
                 "later: cannot be combined with split, in which every line takes its own slot"
             )
+        return self
+
+    @pydantic.model_validator(mode="after")
+    def _exact_without_limits(self) -> Self:
+        if self.method == "cp_sat":
+            for name in _ONLY_JOINT:
+                if getattr(self, name) != type(self).model_fields[name].default:
+                    raise ValueError(
+                        f"{name}: has no effect with method cp_sat, which considers everything and "
+                        "searches until gap is reached; leave it out, or choose method joint"
+                    )
         return self
 
 

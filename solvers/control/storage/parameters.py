@@ -6,12 +6,13 @@ from typing import Annotated
 
 import pydantic
 
+from rmfs.control.base import Parameters
 from rmfs.solvers.control.parameters import BufferParameters
 
 Positive = Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)]
 
 
-class StorageParameters(BufferParameters):
+class ForecastParameters(Parameters):
     """Parameters of the forecast of visits."""
 
     horizon_s: Positive = 3600.0
@@ -19,3 +20,7 @@ class StorageParameters(BufferParameters):
     stored."""
     refresh_s: Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)] = 60.0
     """Time, in seconds, after which the forecast of visits is recomputed."""
+
+
+class StorageParameters(ForecastParameters, BufferParameters):
+    """Parameters of PSA controllers that plan ahead."""

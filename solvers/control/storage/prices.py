@@ -17,7 +17,7 @@ from rmfs.control.psa.nearest import Nearest
 from rmfs.solvers.control.answers import answer
 from rmfs.solvers.control.foresight import Foresight
 from rmfs.solvers.control.storage.bands import bands, means
-from rmfs.solvers.control.storage.parameters import Positive, StorageParameters
+from rmfs.solvers.control.storage.parameters import ForecastParameters, Positive
 from rmfs.solvers.control.storage.ways import Ways
 from rmfs.solvers.models.storage import zones
 from rmfs.solvers.models.storage.zones import Prices, Zones, expected_stay_h, place_values
@@ -49,7 +49,7 @@ def solve(question: Question) -> Answer:
     return answer(found, dict(vars(prices)))
 
 
-class PricesParameters(StorageParameters):
+class PricesParameters(ForecastParameters):
     """Parameters of PSA prices."""
 
     method: Literal["clarabel", "greedy"] = "clarabel"

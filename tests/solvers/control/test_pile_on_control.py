@@ -235,6 +235,27 @@ def test_split_orders_are_not_also_covered_later() -> None:
         choose(Problem.POA, {"name": "pile-on", "later": True, "split": True}, "test")
 
 
+@pytest.mark.parametrize(
+    ("problem", "given"),
+    [
+        (Problem.POA, {"work_s": 1.0}),
+        (Problem.TA, {"work_s": 1.0}),
+        (Problem.POA, {"pods_per_sku": 2}),
+        (Problem.TA, {"orders_per_slot": 8}),
+    ],
+)
+def test_limits_that_the_exact_method_would_not_keep_are_refused(
+    problem: Problem, given: dict[str, Any]
+) -> None:
+    """The start rule may keep them, so that a set can be run with and without its search."""
+    name = next(iter(given))
+    with pytest.raises(InputError, match=f"{name}: has no effect with method cp_sat"):
+        choose(problem, {"name": "pile-on", "method": "cp_sat", **given}, "test")
+    choose(problem, {"name": "pile-on", "method": "cp_sat", "gap": 0.1}, "test")
+    for method in ("joint", "greedy"):
+        choose(problem, {"name": "pile-on", "method": method, **given}, "test")
+
+
 @pytest.mark.parametrize("method", ["joint", "cp_sat", "greedy", "hadgs"])
 def test_every_method_answers(method: str) -> None:
     """Here all find the pod that has what both orders want."""

@@ -9,7 +9,9 @@ import pytest
 from doubles import Situation, small_layout
 
 from rmfs.control.asks import Ask, Call, told_by
+from rmfs.control.choices import choose
 from rmfs.control.problems import Problem
+from rmfs.errors import InputError
 from rmfs.solvers.control.storage.bands import bands, means
 from rmfs.solvers.control.storage.placement import PlacementControl, worth_looking_at
 from rmfs.solvers.control.storage.prices import PricesControl
@@ -143,3 +145,11 @@ def test_bands_are_of_equal_size_and_in_order() -> None:
     assert bands(values, 3).tolist() == [2, 0, 1, 1, 2, 0]
     assert means(values, bands(values, 3)).tolist() == [0.5, 3.0, 7.0]
     assert bands(np.array([2.0, 1.0]), 5).tolist() == [1, 0]
+
+
+def test_a_buffer_time_is_refused_where_questions_have_a_period() -> None:
+    """PSA prices asks every `period_s`; it took `buffer_s`, and did nothing with it."""
+    with pytest.raises(InputError, match="buffer_s"):
+        choose(Problem.PSA, {"name": "prices", "buffer_s": 60.0}, "test")
+    for name in ("placement", "stays"):
+        choose(Problem.PSA, {"name": name, "buffer_s": 60.0}, "test")
