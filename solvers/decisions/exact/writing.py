@@ -158,9 +158,10 @@ def _lp(stated: Exact) -> Iterator[str]:
     signs = {"E": "=", "L": "<=", "G": ">="}
     for row, sense, right, number in _sides(stated):
         part = slice(int(program.row_start[number]), int(program.row_start[number + 1]))
-        if part.start == part.stop:
-            continue
         yield f" {row}:"
+        if part.start == part.stop:
+            # an empty row can make the program infeasible
+            yield f"  + 0 {CONSTANT}"
         yield from _terms(program.coefficient[part], program.column[part], names)
         yield f"  {signs[sense]} {_number(right)}"
     yield "Bounds"

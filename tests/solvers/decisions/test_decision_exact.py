@@ -212,3 +212,11 @@ def test_solution_files_that_are_none_are_refused(tmp_path: Path) -> None:
     (tmp_path / "a.sol").write_text("send_r0_t0 1\nsend_r0_t1 1\n")
     with pytest.raises(InputError, match=r"robot: 0 occurs twice|is not allowed"):
         answer_of(question, exact(question), tmp_path / "a.sol", {})
+
+
+@pytest.mark.parametrize("ending", ["mps", "lp"])
+def test_a_row_without_columns_still_forbids(ending: str, tmp_path: Path) -> None:
+    """A pod must be stored, and there is no place for it."""
+    data = {"travel_s": np.zeros((1, 0)), "access_s": np.zeros(0), "visits": np.ones(1)}
+    write_program(exact(Decision("placement", data)), tmp_path / f"q.{ending}")
+    assert by_highs(tmp_path / f"q.{ending}", tmp_path / "q.sol") == math.inf
