@@ -12,6 +12,7 @@ from rmfs.solvers.decisions.models import model_data
 from rmfs.solvers.decisions.solving import limits_of, methods, rule
 from rmfs.solvers.models import families, pile_on, planning
 from rmfs.solvers.models.backends import highs
+from rmfs.solvers.models.checks import ModelError
 from rmfs.solvers.models.solution import Limits, WallGuardError
 
 if TYPE_CHECKING:
@@ -40,7 +41,10 @@ def bounds(
     guard_s: float | None = None,
     search: bool = True,
 ) -> Iterator[tuple[str, float]]:
-    """Yield the name of each method with its bound; infinite bounds are left out.
+    """Yield the name of each method with its bound; methods without a bound are left out.
+
+    A question has no solution if its bound is inf (-inf if the objective is maximised). The exact
+    search is left out, too, if the solver refuses the program, for example because of huge costs.
 
     Parameters
     ----------
@@ -60,23 +64,25 @@ def bounds(
     data, family = model_data(decision, where), decision.family
     if family == "pile_on":
         first = pile_on.solve(data, "greedy")
-        yield from _finite("prices", pile_on.bounded(data, first, STEPS).bound)
+        yield from _known(decision, "prices", pile_on.bounded(data, first, STEPS).bound)
     stated = None if family in ("zones", "run_bound") else exact(decision, where)
     if stated is not None and stated.program.nonzeros <= _LARGEST:
         with suppress(WallGuardError):
             interior = stated.program.nonzeros > _LARGE
             relaxed = highs.relax(stated.program, guard, interior=interior)
-            yield from _finite("relaxation", relaxed.bound * stated.factor)
+            yield from _known(decision, "relaxation", relaxed.bound * stated.factor)
     elif family == "planning":  # whose prices say less than its relaxation
-        yield from _finite("prices", planning.solve(data, "greedy", bound_steps=STEPS).bound)
+        yield from _known(
+            decision, "prices", planning.solve(data, "greedy", bound_steps=STEPS).bound
+        )
     if not search:
         return
     method = _SEARCH.get(family, methods(family)[0])
     given = families.family(family).solve
     limits = replace(limits_of(method, work), wall_guard_s=guard_s)
-    with suppress(WallGuardError):
+    with suppress(WallGuardError, ModelError):
         start = given(data, rule(family)).values if rule(family) else None
-        yield from _finite(method, given(data, method, limits, start=start).bound)
+        yield from _known(decision, method, given(data, method, limits, start=start).bound)
 
 
 def best(
@@ -102,6 +108,6 @@ def best(
     return max(found, key=lambda one: one[1] * decision.sign)
 
 
-def _finite(name: str, bound: float) -> Iterator[tuple[str, float]]:
-    if math.isfinite(bound):
+def _known(decision: Decision, name: str, bound: float) -> Iterator[tuple[str, float]]:
+    if bound * decision.sign > -math.inf:
         yield name, bound

@@ -35,7 +35,11 @@ def placement(data: Placement) -> Stated:
     program = builder.build()
     names = Names(program.columns)
     names.block("store", x, "place[{p}] = {l}", p=pod, l=place)
-    return program, names, lambda values: {"place": values[x].argmax(axis=1)}
+
+    def answer(values: Reals) -> Plain:
+        return {"place": values[x].argmax(axis=1) if places else np.full(pods, -1)}
+
+    return program, names, answer
 
 
 def matching(data: Matching) -> Stated:

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from time import monotonic, sleep
 from typing import TYPE_CHECKING
 
+from rmfs.errors import InputError
 from rmfs.solvers.decisions.bounding import best as best_bound
 from rmfs.solvers.decisions.files import read
 from rmfs.solvers.decisions.library.table import OPTIMAL
 from rmfs.solvers.decisions.profiling import UNLIMITED
 from rmfs.solvers.decisions.solving import solve
 from rmfs.solvers.models import WallGuardError
-from rmfs.solvers.models.checks import ModelError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator
@@ -147,7 +147,7 @@ def _tried(
             found = solve(
                 decision, method, work=work, seed=number, start=start, guard_s=effort.guard_s
             )
-        except (WallGuardError, ModelError) as error:
+        except (WallGuardError, InputError) as error:
             tell(f"{row.question}: {method}: {error}")
             continue
         by = method if method in UNLIMITED else f"{method} {work:g}"

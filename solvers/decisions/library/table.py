@@ -157,6 +157,7 @@ class Library:
     def _entered(self, decision: Decision, found: Found | None, by: str, bound: float) -> list[str]:
         row = self.rows[decision.name]
         better, sign = [], decision.sign
+        kept: Found | None = None
         when = stamp()
         if found is not None and found.is_there:
             value = check(decision, replace(found, bound=math.nan))
@@ -167,12 +168,14 @@ class Library:
                 kept = replace(
                     found, objective=value, bound=math.nan, by={**found.by, "entered_by": by}
                 )
-                write_solution(decision, kept, _answer(self.path(row)))
                 better.append("value")
         if math.isfinite(bound) and (math.isnan(row.bound) or (bound - row.bound) * sign > 0):
             _refuse_beyond(row, row.value, bound, sign)
             row = replace(row, bound=bound, bound_by=by, bound_when=when)
             better.append("bound")
+        # nothing is written before value and bound are known to agree
+        if kept is not None:
+            write_solution(decision, kept, _answer(self.path(row)))
         if better:
             self.rows[row.question] = row
             self.save()

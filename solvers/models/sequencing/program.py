@@ -86,6 +86,8 @@ class Columns:
         taken = x > 0.5
         visits = taken[self.visit]
         used = int(visits.any(axis=1).sum())
+        if not used:
+            return VisitSequence(np.zeros(0, np.int64), np.full(self.data.orders, -1))
         started = taken[self.started]
         start = np.where(self.data.open, -1, started.argmax(axis=0) - 1)
         # Orders start with what they take first; the columns may say earlier.
@@ -154,8 +156,9 @@ def formulate(data: Sequencing, visits: int, least: int) -> Formulation[VisitSeq
     take = builder.columns((visits, order.size))
     made = (times < least).astype(np.float64).ravel()
     builder.rows(visits, (times, visit, 1), lower=made, upper=1)
-    index = np.arange(visits - 1)[:, None]
-    builder.rows(visits - 1, (index, visit[1:], 1), (index, visit[:-1], -1), upper=0)
+    later = max(visits - 1, 0)
+    index = np.arange(later)[:, None]
+    builder.rows(later, (index, visit[1:], 1), (index, visit[:-1], -1), upper=0)
     _twice(builder, visit)
     _takes(builder, data, pods, visit, started, finished, take, order, sku)
     _slots(builder, data, started, finished, passing, room)

@@ -7,12 +7,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from decision_samples import sample
 
 from rmfs.cli import main
 from rmfs.solvers.decisions.bounding import bounds
-from rmfs.solvers.decisions.files import write
+from rmfs.solvers.decisions.files import Decision, write
 from rmfs.solvers.decisions.schema import SCHEMAS, described
 from rmfs.solvers.decisions.solving import solve
 
@@ -174,6 +175,46 @@ def test_bounds_are_below_what_is_found(family: str) -> None:
         assert proven
         slack = 1e-6 * max(1.0, abs(found.objective))
         assert all((value - found.objective) * question.sign <= slack for _, value in proven)
+
+
+UNSOLVABLE: dict[str, dict[str, Any]] = {
+    "matching": {"travel_s": np.ones((1, 2)), "leave_s": np.full(2, np.inf)},
+    "rack_allocation": {
+        "units": np.array([[3]]),
+        "stock": np.array([[1]]),
+        "slots": np.array([1]),
+    },
+    "zones": {
+        "visit_s": np.ones((1, 1)),
+        "rate_per_h": np.ones(1),
+        "pods": np.array([3.0]),
+        "places": np.ones(1),
+        "congestion_s_h": np.zeros(1),
+    },
+}
+"""Two tasks for one robot, three units of which there is one, three pods for one place."""
+
+
+@pytest.mark.parametrize("family", UNSOLVABLE)
+def test_the_bound_of_a_question_without_a_solution_is_infinite(
+    family: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(Decision(family, UNSOLVABLE[family]), tmp_path)
+    assert main(["decisions", "bound", str(tmp_path)]) == 0
+    assert capsys.readouterr().out.splitlines()[-1].endswith(": bound inf")
+
+
+def test_a_bound_is_printed_if_the_search_refuses_the_question(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The only choice costs 2 + 3; the costs of the other one add up to too much for CP-SAT."""
+    cost_s = np.array([[1e19, 2.0], [3.0, 4e18]])
+    data = {"begin_s": np.zeros(2), "end_s": np.ones(2), "cost_s": cost_s}
+    write(Decision("stays", {**data, "capacity": np.ones(2, int)}), tmp_path)
+    assert main(["decisions", "bound", str(tmp_path)]) == 0
+    told = capsys.readouterr().out.splitlines()
+    assert [line.split(": ")[1] for line in told[:-1]] == ["relaxation"]
+    assert float(told[-1].split()[-1]) <= 5.0
 
 
 def test_bounds_and_profiles_are_printed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

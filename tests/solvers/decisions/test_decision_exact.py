@@ -220,3 +220,28 @@ def test_a_row_without_columns_still_forbids(ending: str, tmp_path: Path) -> Non
     data = {"travel_s": np.zeros((1, 0)), "access_s": np.zeros(0), "visits": np.ones(1)}
     write_program(exact(Decision("placement", data)), tmp_path / f"q.{ending}")
     assert by_highs(tmp_path / f"q.{ending}", tmp_path / "q.sol") == math.inf
+
+
+@pytest.mark.parametrize(
+    ("family", "data"),
+    [
+        (
+            "placement",
+            {"travel_s": np.zeros((0, 0)), "access_s": np.zeros(0), "visits": np.zeros(0)},
+        ),
+        (
+            "sequencing",
+            {
+                "needs": np.zeros((0, 1), int),
+                "holds": np.ones((1, 1), int),
+                "capacity": 1,
+                "opened": np.zeros(0, int),
+            },
+        ),
+    ],
+)
+def test_nothing_to_decide_is_a_program_with_an_answer(family: str, data: Plain) -> None:
+    question = Decision(family, data)
+    stated = exact(question)
+    values = stated.answer(np.zeros(stated.program.columns))
+    assert check(question, Found(values)) == 0.0

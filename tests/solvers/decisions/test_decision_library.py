@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 from decision_samples import sample
@@ -13,7 +14,7 @@ from decision_samples import sample
 from rmfs.cli import main
 from rmfs.errors import InputError
 from rmfs.solvers.decisions.checking import WrongError, check
-from rmfs.solvers.decisions.files import read, write, write_solution
+from rmfs.solvers.decisions.files import Decision, read, write, write_solution
 from rmfs.solvers.decisions.library import drawing
 from rmfs.solvers.decisions.library.derived import derived
 from rmfs.solvers.decisions.library.improving import METHODS, Effort, improve
@@ -67,6 +68,29 @@ def test_only_what_is_allowed_and_better_is_entered(library: Library) -> None:
     assert library.rows[question.name] == before
     assert library.enter(question, None, "assignment", bound=best.bound) == ["bound"]
     assert library.rows[question.name].status == "optimal"
+
+
+def test_a_bound_that_contradicts_its_answer_leaves_everything_as_it_was(library: Library) -> None:
+    """The table and the file of the best known answer belong together."""
+    question = sample("matching", 0)
+    best = solve(question)
+    with pytest.raises(InputError, match=r"bound .* contradicts value"):
+        library.enter(question, best, "a liar", bound=best.objective + 1)
+    row = Library.load(library.folder).rows[question.name]
+    assert math.isnan(row.value)
+    assert library.answer(row, question) is None
+
+
+def test_improving_goes_on_if_a_method_refuses_a_question(tmp_path: Path) -> None:
+    """CP-SAT refuses a cost of 1e19; HiGHS finds 2 + 1 + 5, as zone 0 has one place."""
+    cost_s = np.array([[1.0, 2.0], [1.0, 4.0], [1e19, 5.0]])
+    data = {"begin_s": np.zeros(3), "end_s": np.ones(3), "cost_s": cost_s}
+    question = Decision("stays", {**data, "capacity": np.array([1, 2])})
+    write(question, tmp_path / "stays" / "small")
+    told: list[str] = []
+    improve(Library.load(tmp_path), Effort(work=0.1), tell=told.append)
+    assert Library.load(tmp_path).rows[question.name].value == 8.0
+    assert any("cp_sat" in line and "adds up to" in line for line in told)
 
 
 def test_two_who_enter_at_a_time_lose_nothing(library: Library) -> None:
