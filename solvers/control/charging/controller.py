@@ -37,7 +37,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
     robot time that charging will take after these time slots. Robots whose stay at a charging place
     is due are sent there as soon as they are free. Charging robots stay until a new plan makes them
     leave or their battery is full. Until the first answer, and after a failure, the rule
-    `threshold` applies, with `below_share` and `until_share`.
+    `threshold` applies, with `below_share`, `until_share` and `hand_over_share`.
     """
 
     parameters_model = ScheduleParameters

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import pydantic
 
-from rmfs.control.ca.levels import LevelParameters, Share
+from rmfs.control.ca.levels import Level, LevelParameters, Share
 from rmfs.solvers.models.solution import Limits
 
 Count = Annotated[int, pydantic.Field(ge=1)]
@@ -17,6 +17,16 @@ NotNegative = Annotated[float, pydantic.Field(ge=0, allow_inf_nan=False)]
 class ScheduleParameters(LevelParameters):
     """Parameters of CA schedule."""
 
+    hand_over_share: Level | None = None
+    """Until the first answer, and after a failure: a charging robot gives up its place if its level
+    exceeds that of a robot waiting for the place by more than this share of the capacity and
+    suffices for any task. Default: never. Otherwise, the schedule determines who leaves."""
+    below_share: Share = 0.3
+    """Until the first answer, and after a failure: a robot charges when its battery level falls
+    below this share of the capacity."""
+    until_share: Level = 0.8
+    """Until the first answer, and after a failure: battery level (share of the capacity) up to
+    which a robot charges."""
     method: Literal["highs", "cp_sat", "greedy"] = "highs"
     """Solution method: `greedy` (a rule), or `highs` or `cp_sat`, which start from the solution of
     `greedy`."""
