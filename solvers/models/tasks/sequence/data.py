@@ -19,13 +19,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rmfs.solvers.models.checks import costs, flags, integers, reals
+from rmfs.solvers.models.checks import costs, flags, integers, reals, require
 
 NONE = -1
 """Stands for no place, for a pod that is not moved."""
 
 TICKS_PER_S = 1000
 """Input times are rounded to milliseconds, so that all back ends solve the same problem."""
+
+LONGEST_S = 1e9
+"""Longest finite time, so that sums of milliseconds fit into the integers of all back ends."""
 
 SLACK_S = 1e-7
 """Tolerance for rounding errors in sums of whole milliseconds."""
@@ -35,7 +38,8 @@ SLACK_S = 1e-7
 class TaskSequence:
     """Robots, tasks and free places.
 
-    Times are rounded to milliseconds. A drive with time +inf is not allowed.
+    Times are rounded to milliseconds, and are at most `LONGEST_S`, or infinite where this is
+    stated. A drive with time +inf is not allowed.
 
     Parameters
     ----------
@@ -108,6 +112,8 @@ class TaskSequence:
             "skip_s": costs("skip_s", self.skip_s, (tasks,), low=0),
         }
         for field, value in checked.items():
+            huge = np.isfinite(value) & (np.abs(value) > LONGEST_S)
+            require(not huge.any(), field, f"must be at most {LONGEST_S:g} s, or infinite")
             exact = np.rint(value * TICKS_PER_S) / TICKS_PER_S
             exact.setflags(write=False)
             object.__setattr__(self, field, exact)

@@ -165,8 +165,8 @@ class Master:
             ticks.tasks, cost=np.where(may_skip, ticks.skip / TICKS_PER_S, 0.0), upper=may_skip
         )
         rows = [list(self._rows(self.routes[index])) for index in which]
-        row = np.concatenate([np.array(one, np.int64) for one in rows])
-        column = np.repeat(driven, [len(one) for one in rows])
+        row = np.array([one for route in rows for one in route], np.int64)
+        column = np.repeat(driven, np.array([len(one) for one in rows], np.int64))
         lower = np.repeat([1.0, -np.inf], [self._first, ticks.places])
         tasks = ticks.robots + np.arange(ticks.tasks)
         count = self._first + ticks.places

@@ -1,5 +1,6 @@
 """Routes: against enumeration on random small cases, the rule, the bound and the short ways."""
 
+from dataclasses import fields
 from itertools import permutations, product
 from math import inf, isinf
 
@@ -377,3 +378,22 @@ def test_stopped_at_once_cp_sat_says_if_the_relaxation_proves_that_there_are_no_
             assert ended.status is Status.INFEASIBLE
             stopped += isinf(relaxed_bound(data))
     assert stopped > 5
+
+
+def test_column_generation_ends_without_routes() -> None:
+    """Two robots carry pods, and there is one place, 30 hours away."""
+    far = np.full((2, 1), 30 * 3600.0)
+    none, nothing = np.zeros((0, 1)), np.zeros(0)
+    more = (nothing, nothing, none, nothing, nothing, nothing, nothing, 1)
+    data = TaskSequence(np.zeros(2), [True, True], none.T.repeat(2, 0), far, none.T, *more)
+    ended = solve(data, "columns")
+    assert ended.values is None
+    assert ended.status in (Status.LIMIT, Status.INFEASIBLE)
+
+
+def test_times_beyond_the_integers_of_the_back_ends_are_refused() -> None:
+    given = {field.name: getattr(CASES[1][0], field.name) for field in fields(TaskSequence)}
+    skip = np.full_like(given["skip_s"], 1e10)
+    assert skip.size
+    with pytest.raises(ModelError, match=r"skip_s: must be at most 1e\+09 s"):
+        TaskSequence(**{**given, "skip_s": skip})
