@@ -128,3 +128,19 @@ def test_stations_on_other_tiers() -> None:
     released(situation, 0, 4)
     assert decide(situation, situation.make(SamePod)) == []
     assert decide(situation, situation.make(SamePod, same_tier=False)) == [(0, 1)]
+
+
+def test_a_pod_whose_tier_has_no_station_that_is_on_holds_up_nobody() -> None:
+    """Pod 0 and station 2 are on tier 1, pod 1 and station 1 on tier 0."""
+    layout = small_layout(places=6, pods=4, replenishment_stations=2)
+    tier = np.zeros(layout.waypoints, np.int16)
+    tier[[layout.pod_waypoint[0], layout.replenishment_stations[1].waypoint]] = 1
+    floors = (Tier(length_m=20.0, width_m=12.0), Tier(length_m=20.0, width_m=12.0))
+    situation = Situation(dataclasses.replace(layout, tier=tier, tiers=floors))
+    situation.world.stations[2].active = False
+    for pod in (0, 1):
+        released(situation, pod, 4)
+    controller = situation.make(SamePod)
+    assert decide(situation, controller) == [(1, 1)]
+    situation.world.stations[2].active = True
+    assert decide(situation, controller) == [(0, 2)]

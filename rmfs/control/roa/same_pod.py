@@ -41,7 +41,8 @@ class SamePodParameters(Parameters):
     """Whether a batch for which no station has room blocks the batches after it. This parameter has
     no effect if `break_batches` is true."""
     same_tier: bool = True
-    """Whether only stations on the current tier of the pod are considered."""
+    """Whether only stations on the current tier of the pod are considered. As long as this tier has
+    no station that is on, the bundles for the pod wait, without blocking other batches."""
 
 
 class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
@@ -78,6 +79,8 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
 
     def _batches(self) -> Iterator[SendBundle]:
         for pod in list(self.view.bundles.released):
+            if not self._on(pod):
+                continue  # there is no queue in which the batch could be the first
             batch = list(self.view.bundles.released[pod])
             space = sum(bundle.space for bundle in batch)
             station = self._by_rule(pod, self._with_room(pod, space, split=True))
@@ -106,16 +109,20 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
 
     def _with_room(self, pod: int, space: float, split: bool = False) -> list[ReplenishmentStation]:
         """Find stations with room; with `split`, also empty stations with room for a part only."""
+        return [
+            station
+            for station in self._on(pod)
+            if space <= station.free_space
+            or (split and station.used == 0 and space > station.capacity)
+        ]
+
+    def _on(self, pod: int) -> list[ReplenishmentStation]:
+        """Return the stations considered for a pod that are on, with room or without."""
         tier = self.view.travel.tier[self.view.pod_waypoint(pod)]
         return [
             station
             for station in self.view.replenishment_stations
-            if station.active
-            and (station.tier == tier or not self.parameters.same_tier)
-            and (
-                space <= station.free_space
-                or (split and station.used == 0 and space > station.capacity)
-            )
+            if station.active and (station.tier == tier or not self.parameters.same_tier)
         ]
 
     def _by_rule(
