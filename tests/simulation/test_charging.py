@@ -6,13 +6,17 @@ import numpy as np
 import pytest
 
 import rmfs
+from rmfs.control.ca.opportunity import Opportunity
 from rmfs.control.decisions import Charge, Unplug
+from rmfs.control.problems import Problem
 from rmfs.control.registry import built_in, solver_backed
+from rmfs.control.ta.balanced import Balanced
 from rmfs.errors import InputError
 from rmfs.measure import load_run, write_run
 from rmfs.simulation.decision import ImpossibleError
 from rmfs.world import verify
 from rmfs.world.batteries import Batteries
+from rmfs.world.charging import ChargeTask
 from tests.simulation.energy_ledger import EnergyLedger
 
 SHORT = {"layout.robots": 12, "scenario.warmup_s": 0, "scenario.duration_s": 2400}
@@ -35,8 +39,8 @@ def simulate(seed=1, **given):
     return run
 
 
-RULES = [name for name in built_in(rmfs.control.problems.Problem.CA) if name != "dummy"]
-RULES += solver_backed(rmfs.control.problems.Problem.CA)
+RULES = [name for name in built_in(Problem.CA) if name != "dummy"]
+RULES += solver_backed(Problem.CA)
 
 
 @pytest.mark.parametrize("rule", RULES)
@@ -144,6 +148,64 @@ def test_rules_are_exchanged_in_the_middle():
     run = simulate(**{"controllers.mm": {"name": "scheduled", "exchanges": exchanges}})
     assert run.footprint["robots_stranded"] == 0
     assert run.footprint["charges"] > 3
+
+
+@pytest.mark.parametrize("place", ["nearest", "soonest"])
+def test_robots_without_work_charge_only_where_a_place_is_free(monkeypatch, place):
+    """Two of the three chargers are far from where the robots rest."""
+    sent, decide = [], Opportunity.decide
+
+    def watched(self):
+        for one in decide(self):
+            if isinstance(one, Charge) and self.view.batteries.share(one.robot.index) >= 0.25:
+                sent.append(len(self.view.all_stations[one.station].tasks))
+            yield one
+
+    monkeypatch.setattr(Opportunity, "decide", watched)
+    simulate(**{"controllers.ca": {"name": "opportunity", "place": place}, "layout.robots": 30})
+    assert len(sent) > 5
+    assert not any(sent)
+
+
+def test_robots_that_charge_do_not_count_at_the_station_they_worked_for(monkeypatch):
+    """Whether a robot may work for a station, beside a count of the robots that do not charge."""
+    answers, may_work = [], Balanced.may_work
+
+    def watched(self, robot, station):
+        may = may_work(self, robot, station)
+        workers = [
+            one
+            for one, works_for in zip(self.view.robots, self._works_for, strict=True)
+            if one is not robot and works_for == station and not isinstance(one.task, ChargeTask)
+        ]
+        answers.append((may, len(workers) < 2))
+        return may
+
+    monkeypatch.setattr(Balanced, "may_work", watched)
+    simulate(**{"controllers.ta": {"robots_per_station": 2, "search_all": True}})
+    assert answers.count((False, False)) > 20
+    assert set(answers) == {(True, True), (False, False)}
+
+
+def test_robots_that_charge_are_not_matched_by_swarm():
+    """The stimulus of a station, with multipliers of 1: work less the robots matched with it."""
+    simulation = rmfs.Simulation(seed=1, set=CHARGERS | {"controllers.ta.name": "swarm"})
+    swarm = simulation.controller_set[Problem.TA]
+    charging = 0
+    for time_s in range(300, 2400, 100):
+        simulation.run_until(time_s)
+        view, robots = simulation.view, simulation.view.robots
+        busy = [robot for robot in robots if not isinstance(robot.task, ChargeTask)]
+        charging += len(robots) - len(busy)
+        work = [len(station.orders) for station in view.pick_stations]
+        work += [station.bundles for station in view.replenishment_stations]
+        matched = [swarm._matched[robot.index] for robot in busy]
+        expected = [
+            max(min(amount, 6) - matched.count(station), 0) for station, amount in enumerate(work)
+        ]
+        swarm._multiplier[:] = 1.0
+        assert swarm._stimulus().tolist() == expected
+    assert charging > 20
 
 
 def test_charging_is_decided_outside():

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rmfs.control.asks import Ask, By
+    from rmfs.world.charging import RecoveryStation
     from rmfs.world.robots import Robot
 
 Share = Annotated[float, pydantic.Field(ge=0, le=1)]
@@ -65,6 +66,10 @@ class ByLevel(ChargeAssignment[P]):
         Levels are shares of the capacity; 0 means that the robot should not charge.
         """
 
+    def places_for(self, robot: Robot, share: float) -> list[RecoveryStation]:
+        """Return the energy stations at which a robot with level `share` may charge now."""
+        return self.view.recovery_stations
+
     def decide(self) -> Iterator[Charge | Unplug | Ask[Any] | By[Any]]:
         """Yield decisions that send robots to charge, then those that make them give up places."""
         batteries = self.view.batteries
@@ -89,7 +94,8 @@ class ByLevel(ChargeAssignment[P]):
             until = self.wanted_share(robot, shares[robot.index])
             if until <= shares[robot.index]:
                 continue
-            station = choose(view, robot, self.parameters.place)
+            among = self.places_for(robot, shares[robot.index])
+            station = choose(view, robot, self.parameters.place, among=among)
             if station < 0:
                 return
             yield Charge(robot, station, until)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from rmfs.control.asks import Ask, By
+    from rmfs.world.charging import RecoveryStation
     from rmfs.world.robots import Robot
 
 
@@ -82,6 +83,13 @@ class Opportunity(ByLevel[OpportunityParameters]):
         free = any(not station.tasks for station in view.recovery_stations)
         low = given.idle_below_share if free and robot.index in view.resting else given.below_share
         return given.until_share if share < low else 0.0
+
+    def places_for(self, robot: Robot, share: float) -> list[RecoveryStation]:
+        """Return all energy stations or, if the robot need not charge now, the free ones."""
+        stations = self.view.recovery_stations
+        if share < self.parameters.below_share:
+            return stations
+        return [station for station in stations if not station.tasks]
 
     def target_share(self) -> float:
         """Return the level up to which robots charge, `until_share`."""

@@ -122,6 +122,7 @@ class StationTeams(TaskAllocation[P]):
 
     def decide(self, consult: Consult) -> Iterator[TaskDecision]:
         """Yield a task for every robot that needs one, and work for robots at rest."""
+        self._count_visitors()
         if self.view.now_s >= self._balance_due_s:
             self._balance_due_s = self.view.now_s + self.parameters.period_s
             self._balance(self.stations_now())
@@ -199,6 +200,16 @@ class StationTeams(TaskAllocation[P]):
         if station >= 0:
             self._workers[station] += 1
         self._works_for[robot.index] = station
+
+    def _count_visitors(self) -> None:
+        """Count robots bound for stations of other kinds, such as chargers, as without a station.
+
+        These robots get their tasks from other controllers.
+        """
+        for station in self.view.all_stations[len(self.view.stations) :]:
+            for task in station.tasks.values():
+                if self._works_for[task.robot] >= 0:
+                    self.count(self.view.robots[task.robot], -1)
 
     def workers(self, station: int, besides: Robot) -> int:
         """Return the number of robots that work for a station, without counting robot `besides`."""

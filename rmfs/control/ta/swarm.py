@@ -157,6 +157,9 @@ class Swarm(Solo[SwarmParameters]):
     def _stimulus(self) -> NDArray[np.float64]:
         """How much each station attracts robots, shape (S,)."""
         view = self.view
+        for charger in view.recovery_stations:
+            for robot in charger.tasks:  # sent there by CA, after storing its pod
+                self._matched[robot] = -1
         work = [len(station.orders) for station in view.pick_stations]
         work += [station.bundles for station in view.replenishment_stations]
         matched = np.bincount([s for s in self._matched if s >= 0], minlength=len(work))
