@@ -7,6 +7,7 @@ import pytest
 from doubles import Situation, small_layout
 
 import rmfs
+from rmfs.control.pps.criteria import Nearest as NearestPod
 from rmfs.control.psa.nearest import Nearest
 from rmfs.control.trackers.congestion import DOUBT, KEPT, Congestion
 from rmfs.control.trackers.regions import REGION_M, Density, Regions
@@ -122,6 +123,19 @@ class TestCongestion:
         expected = (50.0 * KEPT + 30.0) / (80 * KEPT + 10 + DOUBT)
         assert tracker.delay_s.flat[tracker.regions.of[2]] == pytest.approx(expected)
 
+    def test_even_if_more_was_counted_since_than_before(self) -> None:
+        counted = Counted()
+        tracker = counted.situation.view.trackers.get(Congestion)
+        counted.pass_by(2, visits=10, waiting_s=30.0)
+        counted.wait(60.0)
+        tracker.delay_s  # noqa: B018
+        counted.visits[:], counted.waiting_s[:] = 0, 0.0
+        counted.pass_by(7, visits=80, waiting_s=50.0)
+        counted.wait(60.0)
+        delay_s = tracker.delay_s.flat
+        assert delay_s[tracker.regions.of[2]] == 30.0 * KEPT / (10 * KEPT + DOUBT)
+        assert delay_s[tracker.regions.of[7]] == 50.0 / (80 + DOUBT)
+
     def test_a_forecast_looks_where_robots_go(self) -> None:
         counted = Counted()
         tracker = counted.situation.view.trackers.get(Congestion, "forecast")
@@ -181,9 +195,11 @@ class TestRules:
         counted.wait(60.0)
         assert careful.place(robot) != plain.place(robot)
 
-    def test_metres_and_seconds_are_not_added(self) -> None:
+    @pytest.mark.parametrize("model", [Nearest.parameters_model, NearestPod])
+    def test_metres_and_seconds_are_not_added(self, model) -> None:
         with pytest.raises(ValueError, match="needs metric = 'time'"):
-            Nearest.parameters_model(metric="path", congestion=1.0)
+            model(metric="path", congestion=1.0)
+        assert model(metric="path").metric == "path"
 
     @pytest.mark.parametrize("source", ["recent", "forecast"])
     @pytest.mark.parametrize(

@@ -72,6 +72,12 @@ class Nearest(CongestionParameters, PodCriterion):
     estimate: bool = True
     """For `time`: whether the time from the robot to the pod is estimated by Manhattan distance."""
 
+    @pydantic.model_validator(mode="after")
+    def _seconds_only(self) -> Nearest:
+        if self.congestion and self.metric != "time":
+            raise ValueError("congestion: needs metric = 'time'")
+        return self
+
     def score(self, candidates: Candidates, rng: np.random.Generator) -> Scores:
         """Return minus the travel time in s, or minus the distance in m."""
         if self.metric == "time":

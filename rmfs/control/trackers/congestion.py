@@ -118,8 +118,8 @@ class Congestion(Tracker):
             self._read_s = now_s
             counts = self._counts()
             since = counts - self._last
-            # the counts start again at the end of the warm-up
-            self._add(counts if since.sum() < 0 else since)
+            # counts only grow, except that they start again at the end of the warm-up
+            self._add(counts if (since < 0).any() else since)
             self._last = counts
         if self._source == FORECAST and (periods or now_s - self._forecast_s >= AHEAD_S):
             self._forecast_s = now_s
