@@ -106,7 +106,8 @@ class OverdueOrders(Reward):
         heappush(self._due, (order.due_s, order.index))
 
     def order_cancelled(self, order: Order) -> None:
-        """Remove an order, which then no longer counts."""
+        """Count the orders that have become overdue, then remove the cancelled one."""
+        self._catch_up()
         self._open.discard(order.index)
 
     def order_completed(self, order: Order) -> None:

@@ -119,6 +119,12 @@ class Earnings(Observer):
         self._traffic = run.traffic
         self._driven_m = self._metres() if self._goal.distance_m else 0.0
 
+    def warmup_ended(self, time_s: float) -> None:
+        """Deduct the cost of the metres driven so far, because their count is reset to 0."""
+        if self._goal.distance_m:
+            self._value -= self._goal.distance_m * (self._metres() - self._driven_m)
+            self._driven_m = 0.0
+
     def unit_picked(
         self,
         time_s: float,
@@ -154,7 +160,9 @@ class Earnings(Observer):
         if goal.overdue_s:
             still = list(world.orders)
             still += [order for one in world.pick_stations for order in one.orders.values()]
-            value -= goal.overdue_s * sum(self._overdue_s(order, world.now_s) for order in still)
+            # parts of a split order have the same number, and count as one order
+            whole = {order.index: order for order in still}.values()
+            value -= goal.overdue_s * sum(self._overdue_s(order, world.now_s) for order in whole)
         if goal.distance_m:
             value -= goal.distance_m * (self._metres() - self._driven_m)
         return value

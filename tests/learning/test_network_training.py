@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,10 @@ from rmfs.errors import InputError
 from rmfs.learning import DecisionEnv
 from rmfs.learning.networks import KINDS, first_networks, network_rules
 from rmfs.learning.ppo import train_network
+from rmfs.learning.rewards import OverdueOrders
 from rmfs.learning.training import Task
 from rmfs.measure.dictionary import reproducible
+from rmfs.world.orders import Order
 
 LATE = {
     "scenario.duration_s": 600,
@@ -109,6 +112,24 @@ def test_overdue_orders_count_when_their_due_time_passes() -> None:
     # from reset to the first decision, no order is overdue
     footprint = info["footprint"]
     assert -total == footprint["orders_late"] + footprint["orders_overdue_end"] > 10
+
+
+@pytest.mark.parametrize("asked_at_s", [[], [15.0], [15.0, 25.0]])
+def test_orders_cancelled_when_overdue_count_whenever_the_reward_is_asked_for(asked_at_s) -> None:
+    """Due at 10 s: one order is cancelled at 5 s, one at 20 s, and one stays."""
+    world = SimpleNamespace(now_s=0.0)
+    reward, total = OverdueOrders(), 0.0
+    reward.run_started(SimpleNamespace(world=world))
+    orders = [Order.of(index, 0.0, 10.0, (0,), (1,)) for index in range(3)]
+    for order in orders:
+        reward.order_created(order)
+    for time_s in sorted([5.0, 20.0, *asked_at_s, 30.0]):
+        world.now_s = time_s
+        if time_s in (5.0, 20.0):
+            reward.order_cancelled(orders[0 if time_s == 5.0 else 1])
+        else:
+            total += reward.take()
+    assert total == -2.0
 
 
 def test_stored_units_count() -> None:

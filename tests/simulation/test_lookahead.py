@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from doubles import Situation, small_layout
 from test_stepping import told
 
 import rmfs
@@ -14,6 +15,7 @@ from rmfs.control.halving import Comparison, solve
 from rmfs.control.lookahead import Goal, Tried
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
+from rmfs.simulation.lookahead import Earnings
 
 GOAL = Goal(orders=1.0, overdue_s=0.01, distance_m=0.001)
 DISTURBED = {
@@ -198,3 +200,32 @@ def test_a_budget_ends_the_rounds() -> None:
     trials = Noisy([0.0, 1.0, 0.9, 0.8], 0.1)
     best(trials, instants=45)
     assert len(trials.asked) == 7  # all four, then three of them, which was over the budget
+
+
+def test_a_trial_counts_metres_beyond_the_end_of_the_warm_up() -> None:
+    """The same 500 s, with and without a warm-up that ends within the horizon."""
+    goal, values = Goal(units=0.0, distance_m=1.0), []
+    for warmup_s in (0, 250):
+        given = {"scenario.warmup_s": warmup_s, "scenario.duration_s": 500 - warmup_s}
+        run = with_a_free_slot(**given)
+        assert 200 < run.now_s < 250
+        order = next(iter(run.view.orders))
+        station = next(one.index for one in run.view.pick_stations if one.free_slots)
+        base, look = run.controller_set[Problem.POA], run.controller_set._lookahead
+        trials = look(Problem.POA, [AssignOrder(order, station)], base, 150.0, goal)
+        values.append(trials(0, 0).value)
+    assert values[1] == pytest.approx(values[0])
+    assert values[0] < -50
+
+
+def test_a_split_order_is_overdue_once() -> None:
+    """Due at 10 s; at 40 s, a line is in the backlog and two are at stations."""
+    situation = Situation(small_layout(pick_stations=2))
+    order = situation.order(due_s=10.0, s0=1, s1=1, s2=1)
+    for station, sku in ((0, 0), (1, 1)):
+        situation.world.assign_lines(order, station, [sku])
+    situation.world.now_s = 40.0
+    earnings = Earnings(Goal(units=0.0, overdue_s=1.0), begin_s=0.0, horizon_s=40.0)
+    assert earnings.value(situation.world) == -30.0
+    situation.world.assign_lines(order, 1, [2])
+    assert earnings.value(situation.world) == -30.0
