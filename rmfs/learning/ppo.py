@@ -73,7 +73,8 @@ def train_network(
     Raises
     ------
     InputError
-        If a number is out of range, or a package of the extra `ppo` is not installed.
+        If a number is out of range, a package of the extra `ppo` is not installed, or the objective
+        has no value before training.
     """
     numbers = (steps, hidden, candidates, checks)
     if min(numbers) < 1 or not 0 < gamma <= 1 or not learning_rate > 0:

@@ -177,6 +177,7 @@ class Checks(BaseCallback):
         self._done = 0
         self.best, self.rows = first, list[tuple[int, float, float, float]]()
         self.value = self.start_value = mean_value(task, first)
+        task.require_value(self.value)
 
     def _on_step(self) -> bool:
         return True

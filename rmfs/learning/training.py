@@ -9,7 +9,7 @@ from __future__ import annotations
 import warnings
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
-from math import isfinite
+from math import inf, isfinite
 from multiprocessing import get_context
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -124,13 +124,44 @@ class Task:
         return self.value_of(self.settings(weights), seed)
 
     def value_of(self, settings: ControllerSettings, seed: int) -> float:
-        """Simulate one run and return its objective; columns that are not finite count as 0."""
+        """Simulate one run and return its objective; -inf if a column has no finite value.
+
+        A mean, for example, has no value if nothing happened; such a run must not count as good.
+
+        Raises
+        ------
+        InputError
+            If a column contains text.
+        """
         given = {k: v for k, v in self.set.items() if not k.startswith("controllers.")}
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", IdleRuleWarning)  # some weight vectors are bad
             run = simulate(self.layout, self.scenario, settings, seed=seed, set=given)
-        values = [float(run.footprint[name]) * weight for name, weight in self.objective.items()]
-        return sum(value if isfinite(value) else 0.0 for value in values)
+        values = []
+        for name, weight in self.objective.items():
+            if isinstance(run.footprint[name], str):
+                raise InputError(f"objective {name}: is a column of text, not of numbers")
+            values.append(float(run.footprint[name]) * weight)
+        return sum(values) if all(map(isfinite, values)) else -inf
+
+    def require_value(self, value: float) -> None:
+        """Check that the objective had a value in all runs with the rules before training.
+
+        Parameters
+        ----------
+        value
+            The mean objective of these runs.
+
+        Raises
+        ------
+        InputError
+            If it had none.
+        """
+        if not isfinite(value):
+            raise InputError(
+                f"objective {', '.join(self.objective)}: must have a value in every run with the "
+                "rules before training; choose other columns, or longer runs"
+            )
 
     def _kinds(self) -> list[str]:
         return [kind for one in self.problems for kind in TRAINED[Problem(one)].values()]
@@ -191,7 +222,8 @@ def train(
     Raises
     ------
     InputError
-        If a number is out of range, or the package `cma` is not installed.
+        If a number is out of range, the package `cma` is not installed, or the objective has no
+        value with the default weights.
     """
     if min(generations, population - 3, jobs) < 1 or not spread > 0:
         raise InputError(
@@ -211,6 +243,7 @@ def train(
     best, runs, rows = start, 0, []
     with _executor(jobs) as executor:
         first = best_value = _worth(executor, task, [start])[0]
+        task.require_value(first)
         for number in range(generations):
             asked = [np.asarray(one) for one in search.ask()]
             values = _worth(executor, task, asked)

@@ -14,8 +14,10 @@ from rmfs.cli import main
 from rmfs.control.linear import default_weights
 from rmfs.errors import InputError
 from rmfs.learning.training import Task, train
+from rmfs.simulation.idle_rules import IdleRuleWarning
 
 KEYS = {"scenario.duration_s": 300, "layout.robots": 4}
+TURNOVER = {"order_turnover_mean_s": -1.0}
 TASK = Task("small", "small", set=KEYS | {"scenario.duration_s": 100}, seeds=(1, 2))
 
 
@@ -110,6 +112,34 @@ def test_the_command_writes_a_file_that_runs(
 def test_wrong_tasks_are_refused(given: dict[str, Any], told: str) -> None:
     with pytest.raises(InputError, match=told):
         Task("small", "small", **given)
+
+
+def test_rules_that_do_nothing_are_not_the_best() -> None:
+    """If all robots rest, no order is completed, and there is no mean turnover to be small."""
+    task = Task("small", "small", problems=("ta",), objective=TURNOVER, set=KEYS, seeds=(1,))
+    weights = task.start()
+    names = list(default_weights("ta"))
+    run = rmfs.simulate("small", "small", task.settings(weights), seed=1, set=KEYS)
+    assert task.worth(weights, 1) == -run.footprint["order_turnover_mean_s"] < 0
+    weights[names.index("rest")] = 5.0
+    with pytest.warns(IdleRuleWarning):
+        idle = rmfs.simulate("small", "small", task.settings(weights), seed=1, set=KEYS)
+    assert idle.footprint["orders_completed"] == 0
+    assert task.worth(weights, 1) < task.worth(task.start(), 1)
+
+
+def test_an_objective_of_text_is_refused() -> None:
+    task = Task("small", "small", problems=("psa",), objective={"layout": 1.0}, set=KEYS)
+    with pytest.raises(InputError, match="objective layout: is a column of text"):
+        task.worth(task.start(), 1)
+
+
+def test_an_objective_without_a_value_is_refused() -> None:
+    """In five seconds, no order is completed."""
+    keys = KEYS | {"scenario.duration_s": 5}
+    task = Task("small", "small", problems=("psa",), objective=TURNOVER, set=keys, seeds=(1,))
+    with pytest.raises(InputError, match="objective order_turnover_mean_s: must have a value"):
+        train(task, generations=1, population=4)
 
 
 def test_a_feature_that_does_not_exist_is_named() -> None:
