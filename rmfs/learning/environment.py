@@ -13,7 +13,8 @@ from rmfs.control.problems import Problem
 from rmfs.control.task_candidates import lacks_tasks
 from rmfs.errors import InputError
 from rmfs.learning.episode import Episodes
-from rmfs.learning.observing import Observing, Options, is_same
+from rmfs.learning.observing import Observing, Options
+from rmfs.simulation.decision import is_same
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

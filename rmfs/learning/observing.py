@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -220,8 +220,3 @@ def _checked(rankings: Mapping[str, Mapping[str, float]]) -> dict[str, dict[str,
                     f"rankings.{kind}.{name}: unknown feature; valid: {', '.join(COLUMNS[kind])}"
                 )
     return {kind: dict(weights) for kind, weights in rankings.items()}
-
-
-def is_same(answer: Any, other: Any) -> bool:
-    """Return whether two answers have the same type and are equal."""
-    return type(answer) is type(other) and bool(answer == other)

@@ -23,6 +23,11 @@ class ImpossibleError(ValueError):
     """An answer is impossible, or its question has already been answered; the message says why."""
 
 
+def is_same(answer: Any, other: Any) -> bool:
+    """Return whether two answers have the same type and are equal."""
+    return answer is other or (type(answer) is type(other) and bool(answer == other))
+
+
 class Asking(Protocol):
     """The parts of a simulation that a `Decision` needs."""
 
@@ -207,8 +212,8 @@ class Decision:
         """Apply a decision of a turn; the turn goes on."""
         simulation = self._simulation
         outside = simulation.phase.outside
-        if outside.advised is not None and outside.advised[0] is not given:
-            outside.advisor = None
+        if outside.advised is None or not is_same(outside.advised[0], given):
+            outside.advisor = None  # the rule goes on only if its decision was carried out
         outside.advised = None
         try:
             simulation.phase.take(given)

@@ -136,9 +136,21 @@ def test_who_follows_a_rule_gets_its_footprint(problem: Problem, name: str) -> N
     assert units <= inside.footprint["units_picked"]
 
 
-def test_a_candidate_the_rule_would_choose_does_the_same() -> None:
-    """The action of the rule, and the one among the candidates that says the same."""
-    env = made("pps", "psa", rule=True, candidates=100)
+@pytest.mark.parametrize(
+    ("problems", "rules", "share"),
+    [
+        (("pps", "psa"), {}, 1 / 2),
+        (("rps",), {}, 1 / 5),
+        (("rps",), {"controllers.rps": "nearest", "controllers.roa": "random"}, 1 / 20),
+    ],
+)
+def test_a_candidate_the_rule_would_choose_does_the_same(problems, rules, share) -> None:
+    """The action of the rule, and the one among the candidates that says the same.
+
+    A turn of RPS goes on after a decision: what the rule would decide next depends on it.
+    """
+    keys = {"scenario.duration_s": 240} | rules
+    env = DecisionEnv("small", "small", problems=problems, set=keys, rule=True, candidates=100)
     chosen = []
 
     def choose(env: DecisionEnv, info: dict[str, Any]) -> int:
@@ -146,9 +158,9 @@ def test_a_candidate_the_rule_would_choose_does_the_same() -> None:
         return chosen[-1]
 
     _, _, outside = played(env, 2, choose)
-    inside = rmfs.simulate("small", "small", seed=2, set={"scenario.duration_s": 240})
+    inside = rmfs.simulate("small", "small", seed=2, set=keys)
     assert same(outside, inside.footprint)
-    assert sum(action < env.decline for action in chosen) > len(chosen) / 2
+    assert sum(action < env.decline for action in chosen) > len(chosen) * share
 
 
 def test_features_are_the_numbers_of_candidates() -> None:
