@@ -217,6 +217,21 @@ class TestBalancing:
     def test_never_if_the_period_is_0(self, situation) -> None:
         assert situation.make(Balanced, period_s=0).next_event_s() == float("inf")
 
+    def test_robots_without_a_station_are_rounded_down_exactly(self) -> None:
+        """With weights in hundredths; the share of repositioning, times the number of robots."""
+        for robots in (20, 30):
+            situation = Situation(small_layout(robots=robots))
+            for pick, replenishment, moves in ((30, 25, 45), (5, 5, 50), (5, 0, 25), (70, 20, 10)):
+                rule = situation.make(
+                    Balanced,
+                    pick_weight=pick / 100,
+                    replenishment_weight=replenishment / 100,
+                    reposition_weight=moves / 100,
+                    robots_per_station=robots,
+                )
+                without = robots * moves // (pick + replenishment + moves)
+                assert rule._station_of.count(-1) == without
+
 
 class TestSearchAll:
     """Pick stations 0 and 1 at x = 0 and 10, replenishment station 2 at x = 5."""

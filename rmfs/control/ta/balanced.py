@@ -146,4 +146,5 @@ class Balanced(StationTeams[BalancedParameters]):
         given = self.parameters
         weight = given.pick_weight + given.replenishment_weight
         total = weight + given.reposition_weight
-        return ceil(weight / total * len(self.view.robots)) if total > 0 else 0
+        # the tolerance is for weights such as 0.1, which binary numbers only approximate
+        return ceil(weight / total * len(self.view.robots) - 1e-9) if total > 0 else 0
