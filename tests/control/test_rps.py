@@ -72,6 +72,18 @@ def test_a_pod_is_released_at_the_threshold(situation) -> None:
     assert [bundle.index for bundle in situation.world.bundles.released[1]] == [0, 1]
 
 
+@pytest.mark.parametrize("percent", range(11, 100))
+def test_exactly_at_the_threshold_whatever_the_share(situation, percent) -> None:
+    """Pod 1 holds 10 of 100 units; one unit less than the threshold is not enough."""
+    for units, released in ((percent - 11, False), (1, True)):
+        if units:
+            situation.bundle(units=units)
+        rule = situation.make(Emptiest, buffer_threshold=percent / 100)
+        rule._last = 1
+        made = decide(situation, rule)
+        assert (("release", 1) in made) == released
+
+
 def test_a_pod_is_released_when_its_time_is_up(situation) -> None:
     """Promises at 0 and 100 s: the time-out of 1200 s runs from the second."""
     controller = situation.make(Emptiest)

@@ -97,7 +97,8 @@ class Buffered(ReplenishmentPodSelection[P]):
                 room = float((inventory.capacity - inventory.load).max())
                 continue
             yield PromiseBundle(bundle, pod)
-            if load(pod) >= self.threshold(pod) * capacity(pod):
+            # a quotient: the product of 0.55 and 100, say, is above 55
+            if load(pod) / capacity(pod) >= self.threshold(pod):
                 yield ReleasePod(pod)
         yield from self._due()
 
@@ -116,7 +117,7 @@ class Buffered(ReplenishmentPodSelection[P]):
         """Release the bundles of pods at the threshold: another rule may have held them back."""
         inventory = self.view.inventory
         for pod in list(self.view.bundles.unreleased_since_s):
-            if inventory.load[pod] >= self.threshold(pod) * inventory.capacity[pod]:
+            if inventory.load[pod] / inventory.capacity[pod] >= self.threshold(pod):
                 yield ReleasePod(pod)
 
     def _due(self) -> Iterator[ReleasePod]:
