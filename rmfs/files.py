@@ -61,14 +61,18 @@ def replacing(path: Path) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If `path` is itself a folder, if its parent folder cannot be written, or if the disk is
-        full.
+        If `path` is a folder, a device or a pipe, if its parent folder cannot be written, or if the
+        disk is full.
     """
     if path.is_dir():
         raise InputError(f"{path}: is a folder, not a file to write")
+    if path.exists() and not path.is_file():  # renaming would replace the device by a file
+        raise InputError(f"{path}: is a device or a pipe, not a file to write")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except (FileExistsError, NotADirectoryError):
+        raise InputError(f"{path}: cannot be written ({path.parent} is not a folder)") from None
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from None
     os.close(handle)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import stat
 
 import pytest
 from layout_reference import INSTANCES, needs_reference
@@ -44,6 +46,19 @@ def test_new_replaces_no_file_unless_told(tmp_path):
     assert "--force replaces it" in refused("new", path)
     assert path.read_text() == "precious"
     assert run("new", path, "--force").exit_code == 0
+
+
+def test_new_never_takes_the_place_of_a_device_or_a_pipe(tmp_path):
+    pipe = tmp_path / "pipe.toml"
+    os.mkfifo(pipe)
+    assert "pipe.toml: is a device or a pipe" in refused("new", pipe, "--force")
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    assert list(tmp_path.iterdir()) == [pipe]
+
+
+def test_a_file_is_not_a_folder_to_write_in(tmp_path):
+    (tmp_path / "file").write_text("")
+    assert f"({tmp_path / 'file'} is not a folder)" in refused("new", tmp_path / "file" / "a.toml")
 
 
 def test_new_refuses_wrong_parameters_and_writes_nothing(tmp_path):
