@@ -117,7 +117,7 @@ def compare(sources: Sequence[str | Path], *, confidence: float = 0.95) -> list[
     else:
         pairs = _same_arms(read)
     if not pairs:
-        raise InputError("nothing to compare: give two runs, arms or tables")
+        raise InputError(f"nothing to compare: {_why_nothing(read)}")
     return [_compared(first, other, confidence) for first, other in pairs]
 
 
@@ -125,6 +125,14 @@ def _same_arms(read: list[list[Side]]) -> list[tuple[Side, Side]]:
     known = [{_arm_of(side): side for side in sides} for sides in read]
     first = known[0]
     return [(first[arm], others[arm]) for arm in first for others in known[1:] if arm in others]
+
+
+def _why_nothing(read: list[list[Side]]) -> str:
+    if len(read) == 1:
+        return "give two runs, arms or tables"
+    several = next(sides for sides in read if len(sides) > 1)
+    names = ", ".join(side.name for side in several)
+    return f"no arms have the same name; to compare one arm, write it as one of: {names}"
 
 
 def _arm_of(side: Side) -> str:
@@ -151,10 +159,15 @@ def _compared(first: Side, other: Side, confidence: float) -> Comparison:
 
 
 def _by_seed(side: Side) -> pd.DataFrame:
-    key = "replication" if "replication" in side.rows else "seed"
-    if key not in side.rows:
+    if "seed" not in side.rows:
         raise InputError(f"{side.name}: has no column seed")
-    rows = side.rows.drop_duplicates(key).set_index(key)
+    rows = side.rows.set_index("seed")
+    if not rows.index.is_unique:
+        seed = rows.index[rows.index.duplicated()][0]
+        raise InputError(
+            f"{side.name}: has several rows with seed {seed}; the rows of an arm need a seed each, "
+            "and a table with several arms needs the column arm"
+        )
     present = [column for column in numbers() if column in rows]
     return rows[present].astype("Float64").astype(float)
 
@@ -185,6 +198,8 @@ def _sides(source: str) -> list[Side]:
     place, _, arm = source.partition(ARM_SIGN)
     path = Path(place)
     if (path / PARAMETERS).is_file():
+        if arm:
+            raise InputError(f"{source}: {place} is a run, which has no arms")
         return [_run_side(path)]
     if (path / plans.FILE).is_file():
         return _experiment_sides(path, arm, source)

@@ -253,7 +253,11 @@ def differences(
     method: Method = "t",
     by: str = "arm",
 ) -> Table:
-    """Return paired differences (arm minus baseline), with p values corrected by Holm's method."""
+    """Return differences (arm minus baseline), with p values corrected by Holm's method.
+
+    They are paired by seed, unless the arms were simulated without common random numbers.
+    """
+    from rmfs.experiments.statistics.intervals import independent
     from rmfs.experiments.statistics.paired import holm
 
     found = {
@@ -275,9 +279,11 @@ def differences(
     made = pd.DataFrame(parts)
     made = made[[("pairs", ""), *(c for c in made if c != ("pairs", ""))]]
     made.columns = pd.MultiIndex.from_tuples(columns_of(made))
+    apart = independent(frame)
+    paired, used = ("independent seeds", "Welch") if apart else ("paired by seed", _called(method))
     caption = (
-        f"Arm minus {baseline}, paired by seed, with {confidence:.0%} confidence intervals "
-        f"({_called(method)}); p values of paired t tests, corrected by Holm over the table."
+        f"Arm minus {baseline}, {paired}, with {confidence:.0%} confidence intervals ({used}); "
+        f"p values of {'Welch' if apart else 'paired t'} tests, corrected by Holm over the table."
     )
     return Table(made, decimals, caption)
 

@@ -18,7 +18,7 @@ import pandas as pd
 from scipy import linalg, optimize, stats
 
 from rmfs.errors import InputError
-from rmfs.experiments.statistics.intervals import require
+from rmfs.experiments.statistics.intervals import independent, require
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -69,7 +69,8 @@ def anova(
         Whether to separate interactions from the residual. Default True.
     block
         Column of the seeds. The variation between seeds gets its own row, as is appropriate with
-        common random numbers. None: the variation is part of the residual. Default `replication`.
+        common random numbers. None, or if runs of the same block have different seeds: the
+        variation is part of the residual. Default `replication`.
     confidence
         Confidence of the intervals of `partial_eta_sq`. Default 0.95.
     names
@@ -95,6 +96,7 @@ def anova(
     if not varying:
         raise InputError("analysis of variance: no factor has more than one level")
     blocked = block is not None and block in known and len(known[block].unique()) > 1
+    blocked = blocked and not independent(known, str(block))
     mains, pairs = _effects(len(varying))
     data = _Data(
         known[column].to_numpy(dtype=float),

@@ -129,6 +129,23 @@ def per_arm(
     return made
 
 
+def independent(frame: pd.DataFrame, pair: str = "replication") -> bool:
+    """Return whether runs of the same replication differ in their seeds.
+
+    This is the case in a design without common random numbers. Such runs are not pairs.
+
+    Parameters
+    ----------
+    frame
+        One row per run. Without the column `seed`, replications are assumed to be seeds.
+    pair
+        Column of the replications. Default `replication`.
+    """
+    if "seed" not in frame or pair not in frame:
+        return False
+    return bool(frame[[pair, "seed"]].drop_duplicates()[pair].duplicated().any())
+
+
 def require(frame: pd.DataFrame, *columns: str) -> None:
     """Raise an error if a column is missing from a frame.
 

@@ -14,7 +14,7 @@ import pandas as pd
 from scipy import stats
 
 from rmfs.errors import InputError
-from rmfs.experiments.statistics.intervals import Method, interval, require
+from rmfs.experiments.statistics.intervals import Method, independent, interval, require
 
 if TYPE_CHECKING:
     from collections.abc import Hashable
@@ -89,12 +89,14 @@ def against(
     by: str = "arm",
     pair: str = "replication",
 ) -> pd.DataFrame:
-    """Compare every arm with a baseline, seed by seed.
+    """Compare every arm with a baseline: seed by seed or, if they share no seeds, as `unpaired`.
 
     Parameters
     ----------
     baseline
         The arm with which the others are compared.
+    method
+        Method for the intervals of paired differences.
     pair
         Column that identifies pairs. Default `replication`, the seed as given in the design.
 
@@ -114,8 +116,11 @@ def against(
     if baseline not in wide:
         raise InputError(f"baseline {baseline}: no such arm with results")
     others = [arm for arm in frame[by].unique() if arm != baseline and arm in wide]
+    apart = independent(frame, pair)
     rows = {
-        arm: paired(wide[arm], wide[baseline], confidence=confidence, method=method)
+        arm: unpaired(wide[arm], wide[baseline], confidence=confidence)
+        if apart
+        else paired(wide[arm], wide[baseline], confidence=confidence, method=method)
         for arm in others
     }
     made = pd.DataFrame.from_dict(rows, orient="index")

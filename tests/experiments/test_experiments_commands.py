@@ -240,7 +240,7 @@ def test_pictures(made, capsys):
         (["experiment", "run", "nothing.toml"], "no such file, and no shipped design"),
         (["compare", "nothing", "results/tiny"], "nothing: neither a run folder"),
         (["compare", "results/tiny#x"], "x: no such arm"),
-        (["compare", "results/tiny#robots=8,psa=random"], "nothing to compare"),
+        (["compare", "results/tiny#robots=8,psa=random"], "nothing to compare: give two"),
         (["compare", "results/tiny", "-c", "unit"], "column unit: not in both"),
     ],
 )
@@ -278,6 +278,22 @@ def test_compare_tables(made, capsys):
     ).to_csv("c.csv", index=False)
     assert main(["compare", "results/tiny#robots=8,psa=random", "c.csv"]) == 0
     assert "no common seed: 3 and 3 runs treated as independent (Welch)" in told(capsys)
+    assert main(["compare", "c.csv", "results/tiny"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "no arms have the same name" in line and "results/tiny#robots=8,psa=random" in line
+
+
+def test_only_equal_seeds_are_compared_as_pairs(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    units = {"units_per_h": [600.0, 620.0, 640.0]}
+    apart = {"seed": [11, 12, 13], "replication": [1, 2, 3]}
+    pd.DataFrame(apart | units).to_csv("a.csv", index=False)
+    pd.DataFrame({"seed": [1, 2, 3]} | units).to_csv("b.csv", index=False)
+    assert main(["compare", "a.csv", "b.csv"]) == 0
+    assert "no common seed: 3 and 3 runs treated as independent (Welch)" in told(capsys)
+    pd.DataFrame({"seed": [1, 2, 1]} | units).to_csv("c.csv", index=False)
+    assert main(["compare", "b.csv", "c.csv"]) == 2
+    assert "c.csv: has several rows with seed 1" in capsys.readouterr().err
 
 
 def test_what_says_nothing_is_not_printed(tmp_path, monkeypatch, capsys):
@@ -314,6 +330,8 @@ def test_compare_runs(tmp_path, monkeypatch, capsys):
     out = told(capsys)
     assert "layout.parameters.robots" in out and "paired by 1 common seed" in out
     assert "interval" not in out.split("output")[1]
+    assert main(["compare", "a#x", "b"]) == 2
+    assert "a#x: a is a run, which has no arms" in capsys.readouterr().err
     assert main(["compare", "a", "c"]) == 0
     out = told(capsys)
     assert "identical" in out and "input: the same" in out

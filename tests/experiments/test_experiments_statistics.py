@@ -26,6 +26,7 @@ from rmfs.experiments.statistics import (
     unpaired,
 )
 from rmfs.experiments.statistics.paired import holm
+from rmfs.experiments.tables import differences
 from tests.tools import coverage
 
 
@@ -95,6 +96,29 @@ def test_welch_where_no_seed_is_common():
     found = unpaired(b, a)
     assert found["p"] == pytest.approx(stats.ttest_ind(b, a, equal_var=False).pvalue)
     assert found["low"] < found["difference"] < found["high"]
+
+
+def test_runs_with_seeds_of_their_own_are_not_pairs():
+    runs = frame()
+    runs["seed"] = range(len(runs))
+    found = against(runs, "units", "base")
+    assert found["pairs"].tolist() == [0, 0]
+    units = {arm: rows["units"] for arm, rows in runs.groupby("arm")}
+    for arm in ("better", "same"):
+        welch = stats.ttest_ind(units[arm], units["base"], equal_var=False)
+        low, high = welch.confidence_interval(0.95)
+        assert found.loc[arm, ["p", "low", "high"]].tolist() == pytest.approx(
+            [welch.pvalue, low, high]
+        )
+    assert "independent seeds" in differences(runs, ["units"], "base").caption
+    effect = anova(runs, "units", ["arm"])
+    assert "seeds" not in effect.index
+    assert effect.loc["arm", "p"] == pytest.approx(stats.f_oneway(*units.values()).pvalue)
+
+    runs["seed"] = runs["replication"]
+    assert against(runs, "units", "base")["pairs"].tolist() == [8, 8]
+    assert "paired by seed" in differences(runs, ["units"], "base").caption
+    assert anova(runs, "units", ["arm"]).loc["seeds", "df"] == 7
 
 
 def test_holm_by_hand():
