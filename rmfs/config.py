@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 import tomllib
 import types
 import typing
@@ -148,17 +149,39 @@ def validate(model: type[M], table: Table, source: str) -> M:
     InputError
         If the table is invalid. The message lists all errors on one line, each with its key. For
         an unknown key, it names the valid key that is spelt most similarly or, if none is similar,
-        all valid keys.
+        all valid keys. If the file has another `format`, the message lists no other error.
     """
     try:
         return model.model_validate(table)
     except pydantic.ValidationError as error:
-        problems = [_explain(model, detail) for detail in error.errors()]
+        found = error.errors()
+        other = [detail for detail in found if detail["loc"] == ("format",)]
+        problems = [_explain(model, detail) for detail in _without_other_forms(other or found)]
         raise InputError(f"{source}: {'; '.join(dict.fromkeys(problems))}") from None
 
 
 def _copied(table: Table) -> Table:
     return {k: _copied(v) if isinstance(v, dict) else v for k, v in table.items()}
+
+
+_NO_TABLE = ("model_type", "model_attributes_type", "dict_type")
+_BRANCH = re.compile(r"(constrained-|function-|(tagged-union|list|dict|tuple|literal)\[).*")
+"""What pydantic calls an alternative of a union that is not a model."""
+
+
+def _without_other_forms(details: list[Any]) -> list[Any]:
+    """Leave out that a wrong number, say, is no table where a table is possible, too."""
+
+    def place(detail: Any) -> tuple[Any, ...]:
+        where: tuple[Any, ...] = detail["loc"]
+        return where[:-1] if where and _BRANCH.fullmatch(str(where[-1])) else where
+
+    wrong = {place(detail) for detail in details if detail["type"] not in _NO_TABLE}
+    return [
+        detail
+        for detail in details
+        if detail["type"] not in _NO_TABLE or place(detail) not in wrong
+    ]
 
 
 def _explain(model: type[pydantic.BaseModel], detail: Any) -> str:
@@ -171,6 +194,9 @@ def _explain(model: type[pydantic.BaseModel], detail: Any) -> str:
         hint = f"did you mean {near[0]}?" if near else f"valid: {', '.join(sorted(set(valid)))}"
         return f"unknown key {'.'.join([*shown, location[-1]])}; {hint}"
     message, given = detail["msg"].removeprefix("Value error, "), detail.get("input")
+    if detail["type"] in _NO_TABLE:
+        keys = sorted({name for candidate in models for name in _names(candidate)})
+        message = "must be a table" + (f" with keys such as {', '.join(keys)}" if keys else "")
     if detail["type"] in ("union_tag_invalid", "union_tag_not_found"):
         # the key that selects the alternative is wrong or missing
         context = detail["ctx"]
@@ -205,6 +231,8 @@ def _walk(
             current = [following for field in fields for following in _models_in(field.annotation)]
         elif taken:
             current = taken
+            continue
+        elif _BRANCH.fullmatch(part):
             continue
         shown.append(part)
     return shown, current

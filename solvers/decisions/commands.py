@@ -206,9 +206,13 @@ def profile(
             rows += list(points(decision, one, work, range(seeds)))
     table = with_gaps(pd.DataFrame(rows))
     write_text(out, table.to_csv(index=False))
-    told = integrals(table).groupby(["family", "method"])[["over_wall", "over_work"]].mean()
+    by_method = ["family", "method"]
+    told = integrals(table).groupby(by_method)[["over_wall", "over_work"]].mean()
+    # its only answer comes at the end of all its work, so the integral is 1 however good it is
+    once = table.groupby([*by_method, "question", "seed"]).size().groupby(by_method).max() == 1
+    told.loc[once, "over_work"] = math.nan
     typer.echo("mean primal integrals: 0 is perfect, 1 is nothing found")
-    typer.echo(told.round(4).to_string())
+    typer.echo(told.round(4).to_string(na_rep="-"))
     typer.echo(out)
 
 

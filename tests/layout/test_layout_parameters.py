@@ -101,6 +101,12 @@ def test_all_problems_are_reported_at_once():
         assert part in message
 
 
+def test_a_file_of_another_kind_is_not_told_key_by_key():
+    message = problem(format="rmfs-scenario/1", duration_s=60, skus={"count": 10})
+    assert message.count(";") == 0 and "unknown key" not in message
+    assert "Input should be 'rmfs-layout/1' (given: 'rmfs-scenario/1')" in message
+
+
 def test_a_wrong_value_does_not_cause_second_hand_problems():
     message = problem(horizontal_aisles="many")
     assert message.count(";") == 0

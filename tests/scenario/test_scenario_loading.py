@@ -116,7 +116,11 @@ def test_all_problems_come_at_once(tmp_path: Path):
         ("warmup_s = nan", "warmup_s: Input should be a finite number"),
         ('warmup_s = "60"', "warmup_s: Input should be a valid number"),
         ("warmup_s = true", "warmup_s: Input should be a valid number"),
-        ("skus = 3", "skus: "),
+        ("skus = 3", "skus: must be a table with keys such as affinity, "),
+        (
+            'orders = { lines = "many" }',
+            "orders.lines: must be a table with keys such as distribution,",
+        ),
         ("[skus", "not valid TOML"),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from abc import ABC, abstractmethod
 from math import ceil
 from typing import TYPE_CHECKING
@@ -93,7 +94,8 @@ class Computed(ABC):
         except Exception as error:
             raise OptimiserError(
                 f"{call.problem} ({type(call.controller).__name__}) at "
-                f"{call.requested_us / 1e6:.3f} s: {type(error).__name__}: {error}"
+                f"{call.requested_us / 1e6:.3f} s: {type(error).__name__}: {error} "
+                f"({_place(error)})"
             ) from error
         call.answer = answer
         call.outcome = Outcome.NOTHING if answer.solution is None else Outcome.SOLUTION
@@ -109,6 +111,14 @@ class Computed(ABC):
     @abstractmethod
     def seconds(self, answer: Answer) -> float:
         """Return the simulated time in s from a question until this answer to it takes effect."""
+
+
+def _place(error: Exception) -> str:
+    """Return file and line of the innermost call that is not in an installed package."""
+    calls = traceback.extract_tb(error.__traceback__)
+    own = [call for call in calls if "site-packages" not in call.filename]
+    call = (own or calls)[-1]
+    return f"{call.filename}, line {call.lineno}"
 
 
 class Instant(Computed):

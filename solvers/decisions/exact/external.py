@@ -8,6 +8,7 @@ command is split into words as in a shell, but run without a shell. A solution c
 
 from __future__ import annotations
 
+import os
 import shlex
 import shutil
 import subprocess
@@ -126,7 +127,7 @@ def _require_command(solver: str, command: str) -> None:
 
 def _run(solver: str, command: str, program: Path, solution: Path, seconds: float) -> None:
     given = {"program": program, "solution": solution, "seconds": f"{seconds:g}"}
-    words = [word.format(**given) for word in shlex.split(command)]
+    words = [_absolute(word.format(**given)) for word in shlex.split(command)]
     try:
         done = subprocess.run(
             words,
@@ -144,6 +145,17 @@ def _run(solver: str, command: str, program: Path, solution: Path, seconds: floa
     if done.returncode and not solution.exists():
         last = (done.stderr or done.stdout).strip().splitlines()[-1:] or ["no message"]
         raise InputError(f"{solver}: ended with code {done.returncode} ({last[0]})")
+
+
+def _absolute(word: str) -> str:
+    """Return the absolute path of a file in the working folder, because the solver runs in another.
+
+    The name of a program without a folder is left to the search path.
+    """
+    if os.sep not in word and shutil.which(word) is not None:
+        return word
+    path = Path(word)
+    return str(path.absolute()) if path.is_file() else word
 
 
 def _highs(program: Path, solution: Path, seconds: float) -> None:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import json
+import shlex
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -129,6 +132,21 @@ def test_a_solver_of_somebody_else_is_a_command(
         assert ours["objective"] == pytest.approx(theirs["objective"])
 
 
+def test_files_of_a_command_are_looked_for_in_the_working_folder(folder: Path) -> None:
+    (one, *_) = sorted(folder.glob("matching*"))
+    Path("own").mkdir()
+    script = Path("own/stand_in.py")
+    script.write_text(f"#!{sys.executable}\n{STAND_IN}")
+    script.chmod(0o755)
+    python = shlex.quote(sys.executable)
+    for number, command in enumerate((f"{python} own/stand_in.py", "own/stand_in.py")):
+        with_solver = ["--with", f"{command} {{program}} {{solution}}"]
+        out = f"answer-{number}"
+        assert main(["decisions", "solve", str(one), *with_solver, "--out", out]) == 0
+        (answer,) = Path(out).iterdir()
+        assert main(["decisions", "check", str(one), str(answer)]) == 0
+
+
 FAILING = {
     "nobody": ("cp-optimizer", "must be one of highs, scip, gurobi, cplex, cbc, or a command"),
     "missing": ("no-such-solver {program} {solution}", "the program no-such-solver was not found"),
@@ -221,5 +239,15 @@ def test_bounds_and_profiles_are_printed(folder: Path, capsys: pytest.CaptureFix
     assert main(["decisions", "bound", str(folder), "--work", "0.1"]) == 0
     assert "relaxation: " in capsys.readouterr().out
     assert main(["decisions", "profile", str(folder), "--work", "0.004", "--out", "p.csv"]) == 0
-    assert "mean primal integrals" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "mean primal integrals" in out
+    with Path("p.csv").open() as file:
+        runs = Counter((row["method"], row["question"]) for row in csv.DictReader(file))
+    once = {method for (method, _), count in runs.items() if count == 1}
+    several = {method for (method, _), count in runs.items() if count > 1} - once
+    assert once and several
+    shown = {words[-3]: words[-1] for line in out.splitlines() if len(words := line.split()) > 2}
+    # run once, the integral over work of a method would be 1, whatever it found
+    assert all(shown[method] == "-" for method in once)
+    assert all(0.0 <= float(shown[method]) <= 1.0 for method in several)
     assert "question,family,method,seed" in Path("p.csv").read_text()
