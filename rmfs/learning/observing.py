@@ -106,6 +106,8 @@ class Observing:
         if candidates < 1:
             raise InputError(f"candidates: must be 1 or more (given: {candidates})")
         known = [str(problem) for problem in KINDS]
+        if isinstance(problems, str):
+            raise InputError(f'problems {problems}: must be a list, such as ["{problems}"]')
         for problem in problems:
             if problem not in known:
                 raise InputError(f"problem {problem}: must be one of {', '.join(known)}")

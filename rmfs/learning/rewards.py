@@ -8,6 +8,8 @@ Rewards are amounts (of units, orders or metres), not rates. The time between de
 from __future__ import annotations
 
 from heapq import heappop, heappush
+from math import isfinite
+from numbers import Real
 from typing import TYPE_CHECKING
 
 from rmfs.errors import InputError
@@ -213,12 +215,15 @@ def reward_of(wanted: Wanted) -> Reward:
     Raises
     ------
     InputError
-        If a reward does not exist, or if `wanted` is empty.
+        If a reward does not exist, a weight is not a number, or `wanted` is empty.
     """
     if isinstance(wanted, (str, type)):
         return _one(wanted)
     if not wanted:
         raise InputError("reward: must name at least one reward")
+    for name, weight in wanted.items():
+        if not isinstance(weight, Real) or not isfinite(weight):
+            raise InputError(f"reward {name}: its weight must be a number (given: {weight!r})")
     return Weighted([(_one(name), float(weight)) for name, weight in wanted.items()])
 
 

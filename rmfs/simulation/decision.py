@@ -139,6 +139,9 @@ class Decision:
     def choose(self, row: int) -> None:
         """Answer with a row of `candidates`, given by its number, without the checks of `answer`.
 
+        Rows are counted from 0. A negative number is refused, although Python would count it from
+        the end: an agent may use -1 for no choice.
+
         Raises
         ------
         ImpossibleError
@@ -147,6 +150,8 @@ class Decision:
             If there is no such row.
         """
         self._refuse_answered()
+        if row < 0:
+            raise IndexError(f"row {row}: must be 0 or more; to choose none, use decline()")
         self._apply(self.candidates[row])
 
     def decline(self) -> None:

@@ -43,6 +43,8 @@ def problems_outside(names: Iterable[str], choices: Mapping[Problem, Choice]) ->
         controllers.
     """
     valid = [str(problem) for problem in Problem if problem is not Problem.PP]
+    if isinstance(names, str):
+        raise InputError(f'outside {names}: must be a list of problems, such as ["{names}"]')
     for name in names:
         if name not in valid:
             raise InputError(

@@ -180,6 +180,8 @@ events, streams, remark, allow_not_well_formed, traffic_maker
         traffic_maker: Callable[..., Traffic] = Traffic,
         measured: bool = True,
     ) -> None:
+        if isinstance(seed, bool) or not hasattr(seed, "__index__"):
+            raise InputError(f"seed {seed!r}: must be a whole number")
         if not 0 <= seed <= LARGEST_SEED:
             raise InputError(f"seed {seed}: must be between 0 and {LARGEST_SEED}")
         changes = [*overrides, *as_overrides(set or {})]

@@ -265,6 +265,9 @@ def test_a_picture_of_the_run() -> None:
     ("given", "told"),
     [
         ({"problems": ["pp"]}, "problem pp: must be one of poa"),
+        ({"problems": "pps"}, r'problems pps: must be a list, such as \["pps"\]'),
+        ({"reward": {"units": float("nan")}}, "reward units: its weight must be a number"),
+        ({"reward": {"units": "1"}}, "reward units: its weight must be a number"),
         ({"candidates": 0}, "candidates: must be 1 or more"),
         ({"reward": "profit"}, "reward profit: must be one of units"),
         (

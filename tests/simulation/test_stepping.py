@@ -305,3 +305,22 @@ def test_what_cannot_be_decided_outside_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=reason):
         simulation(outside, **rules)
+
+
+def test_problems_and_seeds_of_a_wrong_type_are_named() -> None:
+    with pytest.raises(
+        InputError, match=r'outside pps: must be a list of problems, such as \["pps"\]'
+    ):
+        rmfs.Simulation("small", "small", outside="pps")
+    for seed in (1.5, "1", True, None):
+        with pytest.raises(InputError, match=f"seed {seed!r}: must be a whole number"):
+            rmfs.simulate("small", "small", seed=seed)
+
+
+def test_a_negative_row_is_not_counted_from_the_end() -> None:
+    run = simulation("pps")
+    decision = run.step()
+    assert decision is not None and len(decision.candidates) > 1
+    with pytest.raises(IndexError, match=r"row -1: must be 0 or more; .* decline\(\)"):
+        decision.choose(-1)
+    decision.choose(0)  # the decision remained open
