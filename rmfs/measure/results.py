@@ -33,6 +33,16 @@ class Results(ABC):
     def footprint(self) -> pd.Series[Any]:
         """Measures of the whole run, as in the single row of `footprint.csv`."""
 
+    @property
+    def series(self) -> pd.DataFrame:
+        """The table `series`: one row of measures for each minute."""
+        return self.table("series")
+
+    @property
+    def decisions(self) -> pd.DataFrame:
+        """The table `decisions`: calls of controllers, and questions to optimisers."""
+        return self.table("decisions")
+
     @abstractmethod
     def table(self, name: str) -> pd.DataFrame:
         """Return a table by its name in the data dictionary: `orders`, `stations`, `series`, ...

@@ -112,16 +112,6 @@ class Run(Results):
         row: pd.Series[Any] = self.table("footprint").iloc[0]
         return row
 
-    @property
-    def series(self) -> pd.DataFrame:
-        """The table `series`: one row of measures for each minute."""
-        return self.table("series")
-
-    @property
-    def decisions(self) -> pd.DataFrame:
-        """The table `decisions`: calls of controllers, and questions to optimisers."""
-        return self.table("decisions")
-
     def table(self, name: str) -> pd.DataFrame:
         """Return a table by name; see `Results.table`."""
         if name not in TABLES:

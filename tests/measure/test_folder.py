@@ -42,6 +42,14 @@ def test_tables_are_read_back(written):
         assert bool(len(run_folder.table(name))) == (not empty), name
 
 
+def test_series_and_decisions_are_attributes_as_of_a_run(written):
+    run_folder = load_run(written)
+    for name in ("series", "decisions"):
+        pd.testing.assert_frame_equal(
+            getattr(run_folder, name), pd.read_parquet(written / f"{name}.parquet")
+        )
+
+
 def test_csv_and_parquet_agree(written):
     csv = pd.read_csv(written / "footprint.csv", keep_default_na=True)
     parquet = load_run(written).table("footprint")
