@@ -50,12 +50,17 @@ class Recorder(Observer):
     units
         Picked units.
     lines
-        Finished order lines. For the last unit of the line, `time_s` is when its pick started,
-        `end_s` when its handling ended, and `robot` the robot that brought its pod.
+        Finished order lines. `assigned_s` is when the line was assigned to its station; the lines
+        of a split order may be assigned at different times. For the last unit of the line, `time_s`
+        is when its pick started, `end_s` when its handling ended, and `robot` the robot that
+        brought its pod.
     orders
         Completed and cancelled orders; rows as in `order_row`.
     open_orders
         Orders neither completed nor cancelled, whether assigned to a station or not, by index.
+    slots
+        Periods in which an order, or a part of one, was assigned to a pick station; `end_s` is nan
+        if it was still there at the end of the run.
     bundles
         Stored bundles; rows as in `bundle_row`, with the robot as an additional last column.
     open_bundles
@@ -127,6 +132,7 @@ class Recorder(Observer):
             **{"cancelled_s": "f8", "units_cut": "i4"},
         )
         self.open_orders: dict[int, Order] = {}
+        self.slots = Log(station="i2", begin_s="f8", end_s="f8")
         self.bundles = Log(
             **{"time_s": "f8", "created_s": "f8", "assigned_s": "f8", "sku": "i4", "units": "i4"},
             **{"space": "f8", "pod": "i4", "station": "i2", "in_file": "i4", "robot": "i2"},
@@ -159,6 +165,8 @@ class Recorder(Observer):
         self._picked_by = -1
         self._busy_until: dict[int, float] = {}
         self._at_station: dict[int, tuple[float, int, int]] = {}
+        self._in_slot: dict[tuple[int, int], float] = {}
+        self._line_assigned: dict[tuple[int, int], float] = {}
         self._before = {"order_redraws": 0, "orders_short": 0}
         self._disturbances: Troubles
 
@@ -215,6 +223,8 @@ class Recorder(Observer):
             self.counters[name] = number - self._before[name]
         for station, (since, pod, robot) in self._at_station.items():
             self.visits.add(station, pod, robot, since, nan)
+        for (station, _), since in self._in_slot.items():
+            self.slots.add(station, since, nan)
 
     def _order_counts(self) -> dict[str, int]:
         """Return the world's counts of orders since the start of the run."""
@@ -230,6 +240,19 @@ class Recorder(Observer):
     def order_created(self, order: Order) -> None:
         """Track the order."""
         self.open_orders[order.index] = order
+
+    def order_assigned(self, order: Order) -> None:
+        """Remember when the order (or part) came to its station, and when each line did."""
+        # the time of the order itself is that of its first part, and lines may join a part later
+        now_s = self.world.now_s
+        self._in_slot.setdefault((order.station, order.index), now_s)
+        for line in order.lines:
+            self._line_assigned.setdefault((order.index, line.sku), now_s)
+
+    def slot_freed(self, order: Order) -> None:
+        """Record the period in which the order, or part of one, was at its station."""
+        since = self._in_slot.pop((order.station, order.index))
+        self.slots.add(order.station, since, self.world.now_s)
 
     def order_cancelled(self, order: Order) -> None:
         """Record the order and stop tracking it."""
@@ -275,7 +298,8 @@ class Recorder(Observer):
         """Record the line."""
         station = order.station
         handled_s = self._busy_until.get(station, time_s)
-        whole = (order.index, self._picked_by, order.assigned_s, handled_s)
+        assigned_s = self._line_assigned.pop((order.index, sku))
+        whole = (order.index, self._picked_by, assigned_s, handled_s)
         self.lines.add(time_s, sku, station, *whole)
 
     def bundle_created(self, bundle: Bundle) -> None:

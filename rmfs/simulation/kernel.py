@@ -226,6 +226,10 @@ class Kernel(Loop):
         self.arrivals.top_up()
         self._due.signal(Trigger.START)
 
+    def _end(self) -> None:
+        self.chargers.run_ended()
+        super()._end()
+
     def exchange(self, choice: Choice) -> None:
         """Install, at this instant, a controller chosen by a user, and record the exchange."""
         self.interventions.append((self.world.now_s, choice))

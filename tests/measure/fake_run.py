@@ -206,6 +206,7 @@ def world():
         storage=SimpleNamespace(place_of=np.array([1, -1, 3])),
         order_redraws=5,
         orders_short=2,
+        now_s=0.0,
     )
 
 
@@ -247,6 +248,7 @@ def recorded() -> Recorder:
     recorder.task_started(0.0, 0, "pick", 0)
     recorder.task_started(0.0, 1, "rest", -1)
     zero.station, zero.assigned_s = 0, 10.0
+    place.now_s = 10.0
     recorder.order_assigned(zero)
     recorder.pod_lifted(20.0, 0, 0, 1)
     recorder.visit_started(50.0, 0, 0, 0)
@@ -255,6 +257,8 @@ def recorded() -> Recorder:
     recorder.line_picked(53.0, zero, 0, 1)
     zero.completed_s = 60.0
     recorder.order_completed(zero)
+    place.now_s = 60.0
+    recorder.slot_freed(zero)
     recorder.decision("poa", 10.0, 0.5, 1)
     recorder.rule_decided("poa", 10.0)
     _question(recorder, 50.0, 60.0, applied=7)
@@ -287,6 +291,8 @@ def recorded() -> Recorder:
     recorder.line_picked(203.0, one, 1, 1)
     one.completed_s = 210.0
     recorder.order_completed(one)
+    place.now_s = 210.0
+    recorder.slot_freed(one)
     recorder.task_started(210.0, 0, "rest", -1)
     first, second = bundle(0, 120.0), bundle(1, 130.0)
     recorder.bundle_created(first)

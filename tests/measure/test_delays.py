@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 from ledger import check_delays
 from matplotlib.figure import Figure
 
 import rmfs
+from rmfs.measure.events import Happening
 from rmfs.measure.plots.delays import BINS, LABELS, delays
 from rmfs.measure.recorder import TASKS
 from rmfs.measure.tables.delays import PARTS, by_order
@@ -126,3 +128,29 @@ def test_an_order_of_which_a_part_is_open_is_not_complete(duration_s: float) -> 
     picked = run.table("picks").groupby("order").size()
     assert len(completed) == run.footprint["orders_completed"]
     assert (picked.loc[completed.index] == completed["units"]).all()
+
+
+def test_each_line_of_a_split_order_waits_until_it_is_assigned_itself() -> None:
+    """Not until another part of the order, or the part that it joins, was: from the events."""
+    keys = {
+        "scenario.warmup_s": 300,
+        "scenario.duration_s": 900,
+        "controllers.poa.split_orders": 10**6,
+    }
+    run = rmfs.simulate("small", "small", "pile-on-split", seed=3, set=keys, trace=True)
+    check_delays(run)
+    assert run.events is not None
+    told = pd.DataFrame(run.events.columns())
+    came = told[told["kind"] == Happening.ORDER_ASSIGNED].groupby(["order", "station"])["time_us"]
+    own = told[(told["kind"] == Happening.ORDER_LINE) & (told["station"] >= 0)]
+    of_part = own.groupby(["order", "sku", "station"])["time_us"].min()
+    created = run.table("orders").set_index("order")["created_s"]
+    lines = run.table("delays")
+    for line in lines.itertuples():
+        where = line.order, line.sku, line.station
+        # the lines that stay when parts are split off are assigned together
+        at_us = of_part[where] if where in of_part else came.max()[line.order, line.station]
+        waited_s = at_us / 1e6 - created[line.order]
+        assert line.wait_assignment_s == pytest.approx(waited_s, abs=2e-6)
+    at = lines["completed_s"] - lines["turnover_s"] + lines["wait_assignment_s"]
+    assert (at.groupby(lines["order"]).agg(np.ptp) > 1).sum() >= 5

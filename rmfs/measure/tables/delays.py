@@ -1,11 +1,12 @@
 """The table `delays`: for each order line, the parts of its order's turnover time.
 
 The parts are the times between the following moments (some of these times are divided further): the
-order arrives; the order is assigned to a station; a robot gets the task to bring the pod from which
-the line's last unit is picked; the robot lifts the pod; the robot enters the queue zone; the robot
-reaches the station; the line's last unit has been handled; the order is complete. The parts add up
-to the order's turnover time. If the pod was already under way when the order was assigned, those
-moments of the robot that lie before the assignment are replaced by the time of the assignment.
+order arrives; the line is assigned to a station, with its order or with a part of it; a robot gets
+the task to bring the pod from which the line's last unit is picked; the robot lifts the pod; the
+robot enters the queue zone; the robot reaches the station; the line's last unit has been handled;
+the order is complete. The parts add up to the order's turnover time. If the pod was already under
+way when the line was assigned, those moments of the robot that lie before the assignment are
+replaced by the time of the assignment.
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ if TYPE_CHECKING:
     Integers = NDArray[np.int64]
 
 PARTS = {
-    "wait_assignment": "waiting for POA to assign the order to a station",
+    "wait_assignment": "waiting for POA to assign the order, or the part of it with this line, "
+    "to a station",
     "wait_pod": "waiting until a robot gets the task to bring the pod, while at least one robot "
     "is at rest",
     "wait_robot": "waiting until a robot gets the task to bring the pod, while all robots have "

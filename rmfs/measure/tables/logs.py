@@ -68,6 +68,11 @@ class Logs:
         return framed(self.recorder.orders, waiting).sort_values("order", ignore_index=True)
 
     @cached_property
+    def slots(self) -> pd.DataFrame:
+        """Periods in which an order, or a part of one, was assigned to a pick station."""
+        return framed(self.recorder.slots)
+
+    @cached_property
     def stored(self) -> pd.DataFrame:
         """Bundles stored."""
         return framed(self.recorder.bundles)

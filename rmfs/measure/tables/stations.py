@@ -43,7 +43,7 @@ STATIONS = (
         INTEGER,
         "visits",
         "Visits of pods in which at least one unit or bundle was handled; for other kinds of "
-        "stations, all visits",
+        "stations, all visits in the table `visits`",
     ),
     Column("visit_time_mean_s", REAL, "s", "Mean duration of the visits that have ended"),
     Column("units_picked", INTEGER, "units", "Units picked"),
@@ -90,8 +90,8 @@ STATIONS = (
         "without_work_share",
         REAL,
         "share",
-        "Share of the measured time in which no order (pick station) or bundle "
-        "(replenishment station) was assigned to the station; empty for other kinds",
+        "Share of the measured time in which no order or part of one (pick station) or no "
+        "bundle (replenishment station) was assigned to the station; empty for other kinds",
     ),
 )
 
@@ -103,7 +103,9 @@ def stations(logs: Logs) -> pd.DataFrame:
     place = np.array([station.waypoint for station in layout.stations], np.int64)
     works = len(layout.pick_stations) + len(layout.replenishment_stations)
     handled = (logs.visits["units"] > 0) | (logs.visits["bundles"] > 0)
-    visits = logs.visits[handled | (logs.visits["station"] >= works)]
+    # a visit in which something was handled in the measured time has not ended before it
+    seen = ~(logs.visits["end_s"] < logs.start_s)
+    visits = logs.visits[handled | ((logs.visits["station"] >= works) & seen)]
     units, orders = logs.units_now, logs.orders
     visited = count(visits["station"], number)
     pile_on = _per(count(units["station"], number), visited)
@@ -171,13 +173,14 @@ def _without_work(logs: Logs, station: int) -> float:
     """Return the share of the measured time in which nothing was assigned to a station."""
     match logs.layout.stations[station]:
         case PickStation():
-            work, done = logs.orders, "completed_s"
+            # not the table of orders: it has only one station for each split order
+            work, names = logs.slots, ("begin_s", "end_s")
         case ReplenishmentStation():
-            work, done = logs.bundles, "time_s"
+            work, names = logs.bundles, ("assigned_s", "time_s")
         case _:
             return float("nan")
     own = work["station"].to_numpy() == station
-    begin, end = work["assigned_s"].to_numpy()[own], work[done].to_numpy()[own]
+    begin, end = (work[name].to_numpy()[own] for name in names)
     return 1.0 - Steps.between(begin, end).positive().mean(logs.start_s, logs.end_s)
 
 

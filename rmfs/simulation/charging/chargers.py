@@ -47,6 +47,11 @@ class Chargers:
             raise ValueError(f"robot {decision.robot.index} is not charging at a charger")
         service.unplug()
 
+    def run_ended(self) -> None:
+        """Report what chargers are doing when the run ends."""
+        for service in self._services.values():
+            service.run_ended()
+
     def set_working(self, station: int, working: bool) -> None:
         """Set whether a charger works or has failed."""
         plan = self._layout.stations[station]

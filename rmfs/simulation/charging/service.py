@@ -68,6 +68,17 @@ class ChargeService:
         self._cancel()
         self._end()
 
+    def run_ended(self) -> None:
+        """Report the charging in progress, if any, when the run ends."""
+        if self._task is not None:
+            self._report()
+
+    def _report(self) -> None:
+        """Report the period from the beginning of charging until now as busy."""
+        self._events.station_busy(
+            self.station.index, self._begun_us / 1e6, self._agenda.now_us / 1e6
+        )
+
     def _enter(self) -> None:
         """Schedule the end of charging, if the target level can be reached."""
         batteries, task = self._world.batteries, self._task
@@ -85,7 +96,5 @@ class ChargeService:
     def _end(self) -> None:
         task, self._task, self._entry = self._task, None, -1
         assert task is not None
-        self._events.station_busy(
-            self.station.index, self._begun_us / 1e6, self._agenda.now_us / 1e6
-        )
+        self._report()
         end_task(self._world, self._events, task.robot)
