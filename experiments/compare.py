@@ -68,8 +68,9 @@ class Comparison:
     inputs
         Inputs that differ, with the columns `key`, `baseline` and `other`.
     outputs
-        One row per footprint column. `baseline` and `other` are means over the common seeds or, if
-        there are none, over all seeds. `difference` is `other` minus `baseline`; `low` and `high`
+        One row per footprint column. `baseline` and `other` are means over the common seeds with a
+        value on both sides or, if there are none, over all values of each side; `pairs` is the
+        number of these common seeds. `difference` is `other` minus `baseline`; `low` and `high`
         are the ends of its confidence interval, and `p` is its p value. `relative` is the
         difference divided by `baseline`. The interval and `p` are nan if there are too few seeds:
         only one common seed, or no common seed and a side with a single seed.
@@ -149,8 +150,11 @@ def _compared(first: Side, other: Side, confidence: float) -> Comparison:
     for column in numbers():
         if column in a and column in b and (a[column].notna().any() or b[column].notna().any()):
             told = (paired if together else unpaired)(b[column], a[column], confidence=confidence)
-            rows[column] = {"baseline": a[column].mean(), "other": b[column].mean(), **told}
-    outputs = pd.DataFrame.from_dict(rows, orient="index").drop(columns="pairs", errors="ignore")
+            # a pair for the paired difference, so that it is the difference of the means
+            both = a.index[a[column].notna() & b[column].notna()] if told["pairs"] else slice(None)
+            means = {"baseline": a[column][both].mean(), "other": b[column][both].mean()}
+            rows[column] = {**means, **told}
+    outputs = pd.DataFrame.from_dict(rows, orient="index")
     outputs.index.name = "column"
     repeating = [*reproducible("footprint"), *(c.name for c in learnt() if not c.measured)]
     shared = [c for c in repeating if c in first.rows and c in other.rows]
@@ -159,6 +163,7 @@ def _compared(first: Side, other: Side, confidence: float) -> Comparison:
 
 
 def _by_seed(side: Side) -> pd.DataFrame:
+    # not the replication: without common random numbers, each arm has other seeds
     if "seed" not in side.rows:
         raise InputError(f"{side.name}: has no column seed")
     rows = side.rows.set_index("seed")

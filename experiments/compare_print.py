@@ -34,6 +34,9 @@ def print_comparisons(found: list[Comparison], columns: list[str], *, everything
         shown = chosen_columns(one, columns, everything=everything)
         console.print(_outputs(one, shown))
         console.print(_how(one))
+        for column in shown:
+            if (pairs := one.outputs["pairs"][column]) < one.pairs:
+                console.print(f"{column}: {pairs:.0f} of these seeds have a value on both sides")
         for note in one.notes:
             console.print(f"Note: {note}.", markup=False)
 

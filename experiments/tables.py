@@ -229,6 +229,7 @@ def means(
 ) -> Table:
     """Return means and half widths of their confidence intervals, one row per arm."""
     parts = {}
+    counts: dict[str, pd.Series] = {}
     decimals: dict[tuple[str, str], int] = {}
     for column in columns:
         found = per_arm(frame, column, confidence=confidence, method=method, by=by)
@@ -236,11 +237,11 @@ def means(
         parts[label, "mean"], parts[label, HALF] = found["mean"], found["half_width"]
         shown = digits(found["half_width"], found["mean"])
         decimals |= {(label, "mean"): shown, (label, HALF): shown}
-        parts["seeds", ""] = found["count"]
-    made = pd.DataFrame(parts)
-    made = made[[("seeds", ""), *(c for c in made if c != ("seeds", ""))]]
-    made.columns = pd.MultiIndex.from_tuples(columns_of(made))
-    caption = f"Means over seeds with {confidence:.0%} confidence intervals ({_called(method)})."
+        counts[label] = found["count"]
+    made = _with_counts(parts, counts, "seeds")
+    caption = (
+        f"Means over seeds with {100 * confidence:g}% confidence intervals ({_called(method)})."
+    )
     return Table(made, decimals, caption)
 
 
@@ -267,6 +268,7 @@ def differences(
     p_values = pd.concat([table["p"] for table in found.values() if "p" in table], keys=list(found))
     corrected = holm(p_values)
     parts = {}
+    counts: dict[str, pd.Series] = {}
     decimals: dict[tuple[str, str], int] = {}
     for column, table in found.items():
         label = column
@@ -275,17 +277,32 @@ def differences(
         parts[label, "p"] = corrected[column]
         shown = digits(half, table["difference"])
         decimals |= {(label, "difference"): shown, (label, HALF): shown, (label, "p"): 4}
-        parts["pairs", ""] = table["pairs"]
-    made = pd.DataFrame(parts)
-    made = made[[("pairs", ""), *(c for c in made if c != ("pairs", ""))]]
-    made.columns = pd.MultiIndex.from_tuples(columns_of(made))
+        counts[label] = table["pairs"]
+    made = _with_counts(parts, counts, "pairs")
     apart = independent(frame)
     paired, used = ("independent seeds", "Welch") if apart else ("paired by seed", _called(method))
     caption = (
-        f"Arm minus {baseline}, {paired}, with {confidence:.0%} confidence intervals ({used}); "
+        f"Arm minus {baseline}, {paired}, with {100 * confidence:g}% confidence intervals ({used}); "
         f"p values of {'Welch' if apart else 'paired t'} tests, corrected by Holm over the table."
     )
     return Table(made, decimals, caption)
+
+
+def _with_counts(
+    parts: Mapping[tuple[str, str], pd.Series], counts: Mapping[str, pd.Series], name: str
+) -> pd.DataFrame:
+    """Return the columns of a table with numbers of runs: one for all measures, if they agree."""
+    first, *others = counts.values()
+    columns = {(name, ""): first, **parts}
+    if not all(first.equals(one) for one in others):
+        own = {(measure, name): count for measure, count in counts.items()}
+        order = list(counts)
+        columns = dict(
+            sorted((dict(parts) | own).items(), key=lambda part: order.index(part[0][0]))
+        )
+    made = pd.DataFrame(columns)
+    made.columns = pd.MultiIndex.from_tuples(columns_of(made))
+    return made
 
 
 def effects(found: pd.DataFrame, column: str) -> Table:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -128,7 +129,7 @@ def verdict(found: Calibration, key: str, column: str) -> str:
     tested = found.steps[-1]
     return (
         f"{key} = {found.level:g}: {column} is {goal.target:g} within {goal.tolerance:g} with "
-        f"confidence {goal.confidence:.0%} ({found.mean:.4g} +- {found.half_width:.2g} in the "
+        f"confidence {100 * goal.confidence:g}% ({found.mean:.4g} +- {found.half_width:.2g} in the "
         f"test, {tested.seeds} seeds; {found.runs} runs in total)"
     )
 
@@ -155,10 +156,12 @@ def steps_table(found: Calibration, key: str, column: str) -> Table:
     goal = found.goal
     caption = (
         f"Target: {column} = {goal.target:g} within {goal.tolerance:g}, confidence "
-        f"{goal.confidence:.0%}. The search compares means over the same few seeds. A test "
+        f"{100 * goal.confidence:g}%. The search compares means over the same few seeds. A test "
         "uses new seeds, and its interval allows for all earlier tests."
     )
-    decimals = {(key, ""): 3, (column, "mean"): 4, (column, HALF): 4}
+    # a level is typed again as it is shown here
+    places = [-int(Decimal(f"{step.level:g}").as_tuple().exponent) for step in found.steps]
+    decimals = {(key, ""): max(0, *places), (column, "mean"): 4, (column, HALF): 4}
     return Table(frame, decimals, caption)
 
 

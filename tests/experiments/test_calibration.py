@@ -11,6 +11,7 @@ import pytest
 from rmfs.cli import main
 from rmfs.errors import InputError
 from rmfs.experiments.calibration import Goal, calibrate
+from rmfs.experiments.calibration.command import steps_table, verdict
 
 NOISE = 0.08
 QUICK = [
@@ -174,3 +175,14 @@ class TestCommand:
         assert told in err
         assert len(err.strip().splitlines()) == 1
         assert not list(tmp_path.iterdir())
+
+
+def test_the_table_shows_every_digit_of_a_level() -> None:
+    """The result can be read from it, however small it is."""
+    goal = sought(target=0.5, low=1e-4, high=8e-4, tolerance=0.2, confidence=0.999)
+    found = calibrate(goal, Noisy(lambda level: 1000.0 * level, noise=0.05), quiet)
+    table = steps_table(found, "scenario.rate", "on_time_share")
+    rows = [line.split("|") for line in table.to("markdown").splitlines() if line[:1] == "|"][2:]
+    assert [float(row[3]) for row in rows] == [step.level for step in found.steps]
+    assert "confidence 99.9%" in table.caption
+    assert "confidence 99.9%" in verdict(found, "scenario.rate", "on_time_share")

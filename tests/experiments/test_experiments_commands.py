@@ -335,3 +335,37 @@ def test_compare_runs(tmp_path, monkeypatch, capsys):
     assert main(["compare", "a", "c"]) == 0
     out = told(capsys)
     assert "identical" in out and "input: the same" in out
+
+
+def test_compare_takes_the_seeds_with_a_value_on_both_sides(tmp_path, monkeypatch, capsys):
+    """The difference is that of the two means beside it."""
+    monkeypatch.chdir(tmp_path)
+    nan = float("nan")
+    a = {"seed": [1, 2, 3], "late_by_mean_s": [10.0, 20.0, 600.0], "units_per_h": [1.0, 2.0, 3.0]}
+    b = {"seed": [1, 2, 3], "late_by_mean_s": [30.0, 60.0, nan], "units_per_h": [2.0, 3.0, 4.0]}
+    pd.DataFrame(a).to_csv("a.csv", index=False)
+    pd.DataFrame(b).to_csv("b.csv", index=False)
+    assert main(["compare", "a.csv", "b.csv", "-c", "late_by_mean_s", "-c", "units_per_h"]) == 0
+    out = told(capsys)
+    (row,) = [line.split() for line in out.splitlines() if line.startswith("  late_by_mean_s")]
+    assert row[1:5] == ["15", "45", "30", "+200.0%"]
+    assert "late_by_mean_s: 2 of these seeds have a value on both sides" in out
+    assert "units_per_h: " not in out
+
+
+def test_compare_refuses_several_rows_for_a_seed(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    pd.DataFrame({"seed": [1, 2, 1, 2], "units_per_h": [1.0, 2.0, 9.0, 9.0]}).to_csv("a.csv")
+    pd.DataFrame({"seed": [1, 2], "units_per_h": [1.0, 2.0]}).to_csv("b.csv")
+    assert main(["compare", "a.csv", "b.csv"]) == 2
+    assert "a.csv: has several rows for seed 1" in capsys.readouterr().err
+
+
+def test_compare_does_not_pair_arms_with_seeds_of_their_own(design, capsys):
+    """Without common random numbers, the replications of two arms share no seed."""
+    path = str(design(common_random_numbers=False))
+    plan = experiments.plan(path)
+    drive(plan, Store(Path("results/tiny")), Inline())
+    names = [f"results/tiny#{arm.name}" for arm in plan.arms[:2]]
+    assert main(["compare", *names]) == 0
+    assert "no common seed: 3 and 3 runs treated as independent (Welch)" in told(capsys)

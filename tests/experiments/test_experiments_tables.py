@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 
+import pandas as pd
 import pytest
 from stand_in import Inline
 
@@ -111,8 +112,6 @@ def test_anova_as_a_table(results):
 
 
 def test_digits_follow_the_spread():
-    import pandas as pd
-
     assert tables.digits(pd.Series([0.0123, 0.02]), pd.Series([1.0])) == 3
     assert tables.digits(pd.Series([343.0]), pd.Series([1000.0])) == 0
     assert tables.digits(pd.Series([float("nan")]), pd.Series([0.5])) == 4
@@ -120,8 +119,6 @@ def test_digits_follow_the_spread():
 
 
 def test_rounding_is_not_printed():
-    import pandas as pd
-
     runs = [(arm, seed) for arm in "ab" for seed in (1, 2)]
     frame = pd.DataFrame(runs, columns=["arm", "replication"])
     frame["idle_share"] = -2.2e-16
@@ -145,8 +142,6 @@ def test_every_kind_of_picture_is_drawn(results, tmp_path, kind):
 
 
 def test_the_front_holds_what_nothing_dominates():
-    import pandas as pd
-
     robots = pd.Series({"a": 8, "b": 16, "c": 16, "d": 24, "e": 8})
     units = pd.Series({"a": 600, "b": 900, "c": 800, "d": 900, "e": 600})
     assert front(robots, units, "less", "more") == ["a", "e", "b"]
@@ -228,8 +223,6 @@ def test_figures_draw_into_the_axes_they_are_given(results, tmp_path):
 
 
 def test_progress_in_bins():
-    import pandas as pd
-
     series = pd.DataFrame(
         {
             "arm": "a",
@@ -268,3 +261,41 @@ def test_provenance_names_design_code_and_rows(results, tmp_path):
     other = frame.assign(wall_s=0.0).sample(frac=1.0, random_state=1)
     assert provenance.rows_hash(other, ["units_per_h"]) == told["rows"]["sha256"]
     assert provenance.rows_hash(frame.head(11), ["units_per_h"]) != told["rows"]["sha256"]
+
+
+def test_each_measure_has_its_own_number_of_seeds_if_some_runs_have_no_value():
+    """The first arm has three values of one measure and four of the other."""
+    gaps = pd.DataFrame(
+        {
+            "arm": ["a"] * 4 + ["b"] * 4,
+            "replication": [1, 2, 3, 4] * 2,
+            "order_turnover_mean_s": [10.0, 20.0, 30.0, float("nan"), 1.0, 2.0, 3.0, 4.0],
+            "units_per_h": [5.0, 6.0, 7.0, 8.0, 6.0, 8.0, 10.0, 12.0],
+        }
+    )
+    for columns in (
+        ["order_turnover_mean_s", "units_per_h"],
+        ["units_per_h", "order_turnover_mean_s"],
+    ):
+        found = tables.means(gaps, columns)
+        assert found.frame["order_turnover_mean_s", "seeds"].tolist() == [3, 4]
+        assert found.frame["units_per_h", "seeds"].tolist() == [4, 4]
+        assert [pair[0] for pair in found.frame][::3] == columns
+        text = found.to("markdown")
+        assert "order turnover mean (s), seeds" in text and "units per hour, seeds" in text
+        apart = tables.differences(gaps, columns, "a").frame.loc["b"]
+        assert apart["order_turnover_mean_s", "pairs"] == 3
+        assert apart["units_per_h", "pairs"] == 4
+        assert apart["order_turnover_mean_s", "difference"] == pytest.approx(2.0 - 20.0)
+    for form in tables.SUFFIXES.values():
+        assert "seeds" in found.to(form)
+
+
+@pytest.mark.parametrize(("confidence", "percent"), [(0.975, "97.5%"), (0.999, "99.9%")])
+def test_the_caption_states_the_confidence_unrounded(results, confidence, percent):
+    _, frame, _ = results
+    found = tables.means(frame, ["units_per_h"], confidence=confidence)
+    assert f"with {percent} confidence" in found.caption
+    base = "robots=8,psa=nearest"
+    apart = tables.differences(frame, ["units_per_h"], base, confidence=confidence)
+    assert f"with {percent} confidence" in apart.caption
