@@ -6,7 +6,11 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rmfs.measure.log import Log
+from rmfs.measure.recorder import TASKS, Recorder
 from rmfs.measure.steps import Steps, counts, covered
+from rmfs.measure.tables.logs import Logs
+from rmfs.measure.tables.robots import with_task
 
 times = st.lists(st.floats(0, 100), max_size=20)
 
@@ -47,3 +51,17 @@ def test_covered_time():
     begin, end = np.array([1.0, 5.0]), np.array([2.0, 8.0])
     assert covered(begin, end, np.array([0, 1.5, 3, 6, 9.0])).tolist() == [0, 0.5, 1, 2, 4]
     assert covered(begin[:0], end[:0], np.array([3.0])).tolist() == [0]
+
+
+def test_a_task_that_ends_with_the_run_is_not_counted_beside_the_next() -> None:
+    """At 100 s, the end of the run, the robot starts to park; the other still rests."""
+    tasks = Log(begin_s="f8", robot="i2", kind="i1")
+    for begin_s, robot, task in [(0.0, 0, "pick"), (0.0, 1, "rest"), (100.0, 0, "park")]:
+        tasks.add(begin_s, robot, TASKS.index(task))
+    recorder = Recorder()
+    recorder.layout, recorder.world = None, None
+    recorder.tasks, recorder.end_s = tasks, 100.0
+    logs = Logs(recorder)
+    at_end = {task: int(with_task(logs, task).at(100.0)) for task in ("pick", "park", "rest")}
+    assert at_end == {"pick": 0, "park": 1, "rest": 1}
+    assert int(with_task(logs, "pick").at(99.0)) == 1

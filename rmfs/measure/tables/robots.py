@@ -111,7 +111,8 @@ def robots(logs: Logs) -> pd.DataFrame:
 
 def with_task(logs: Logs, task: str) -> Steps:
     """Return the number of robots with a given kind of task over time, including the warm-up."""
-    own = logs.tasks[logs.tasks["kind"].to_numpy() == TASKS.index(task)]
-    # a task still under way at the end of the run counts up to the end
-    ends = own["end_s"].mask(own["end_s"] >= logs.end_s)
-    return Steps.between(own["begin_s"], ends)
+    tasks = logs.tasks
+    # a task under way at the end of the run still counts then; one that has just ended does not
+    ends = tasks["end_s"].where(tasks["robot"].duplicated(keep="last"))
+    own = tasks["kind"].to_numpy() == TASKS.index(task)
+    return Steps.between(tasks["begin_s"][own], ends[own])
