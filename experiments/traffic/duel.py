@@ -75,7 +75,7 @@ def all_planners() -> list[str]:
 
 def row(run: TripRun) -> dict[str, float]:
     """Return the table row of a run; `collisions` is nan if the run was not checked."""
-    hours = (run.end_s - run.warmup_s) / 3600.0
+    hours = run.duration_s / 3600.0
     counters, delays = run.traffic.counters(), run.delays_s
     calls_ms = 1e3 * run.traffic.call_times_s()
     return {
@@ -89,7 +89,7 @@ def row(run: TripRun) -> dict[str, float]:
         "planning s/h": counters["planning_s"] / hours,
         "ms per call": float(np.median(calls_ms)) if len(calls_ms) else np.nan,
         "ms per call, 95 %": float(np.quantile(calls_ms, 0.95)) if len(calls_ms) else np.nan,
-        "sim/wall": 3600.0 * hours / run.wall_s,
+        "sim/wall": max(run.end_s - run.warmup_s, 0.0) / run.wall_s,
         "idle robots": run.idle_robots,
         "collisions": run.report.collisions if run.report is not None else np.nan,
     }

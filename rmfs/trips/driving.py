@@ -31,8 +31,12 @@ class TripRun:
 
     Attributes
     ----------
-    warmup_s, end_s
-        Simulated times at which the warm-up and the simulation end, in s.
+    warmup_s, duration_s
+        Simulated time of the warm-up, and measured time after it, in s.
+    end_s
+        Simulated time at which driving ended, in s: after `duration_s` or, if no robot could move
+        any more, earlier, perhaps in the warm-up. Rates refer to `duration_s` all the same, as
+        nothing would have happened in the rest of it.
     wall_s
         Wall time after the warm-up, in s.
     stalled
@@ -45,6 +49,7 @@ class TripRun:
     planner: PlannerSettings
     traffic: Traffic
     warmup_s: float
+    duration_s: float
     end_s: float
     wall_s: float
     stalled: str
@@ -53,7 +58,7 @@ class TripRun:
     @property
     def trips_per_h(self) -> float:
         """Number of trips finished after the warm-up, to goals of any kind, per simulated hour."""
-        return len(self.delays_s) / (self.end_s - self.warmup_s) * 3600.0
+        return len(self.delays_s) / self.duration_s * 3600.0
 
     @property
     def delays_s(self) -> NDArray[np.float64]:
@@ -113,7 +118,8 @@ def drive(
     wall_s = time.perf_counter() - begun
     end_us = traffic.now_us
     report = check(layout, traffic.trace(), until_us=end_us) if proven else None
-    return TripRun(layout, planner, traffic, warmup_s, end_us / 1e6, wall_s, loop.stalled, report)
+    times = (warmup_s, duration_s, end_us / 1e6, wall_s)
+    return TripRun(layout, planner, traffic, *times, loop.stalled, report)
 
 
 class _Loop:

@@ -5,7 +5,9 @@ import pytest
 
 from rmfs.cli import main
 from rmfs.errors import InputError
+from rmfs.experiments.traffic import duel
 from rmfs.layout import load
+from rmfs.layout.mapf import read_map
 from rmfs.traffic import PlannerSettings
 from rmfs.trips import PodTrips, PointTrips, drive, random_trips
 
@@ -61,6 +63,22 @@ def test_trips_are_counted_after_the_warm_up():
     first = drive(hall(), random_trips(hall(), 1), duration_s=300)
     assert len(first.delays_s) + len(later.delays_s) == len(whole.delays_s)
     assert later.trips_per_h == len(later.delays_s) * 6
+
+
+@pytest.mark.parametrize(("warmup_s", "trips"), [(0.0, 2), (300.0, 0)])
+def test_rates_of_a_run_that_stalls_refer_to_the_whole_measured_time(tmp_path, warmup_s, trips):
+    """Two robots in a corridor reach their first goals, and can never pass each other then."""
+    corridor = tmp_path / "corridor.map"
+    corridor.write_text("type octile\nheight 1\nwidth 5\nmap\n.....\n", encoding="ascii")
+    layout = read_map(corridor, [1, 3])
+    stream = PointTrips([[0, 4], [4, 0]])
+    run = drive(layout, stream, duration_s=600, warmup_s=warmup_s, stall_s=60)
+    assert run.stalled and run.end_s < 100
+    assert len(run.delays_s) == trips
+    row = duel.row(run)
+    assert run.trips_per_h == row["trips/h"] == pytest.approx(6 * trips)
+    assert row["km/h"] == pytest.approx(6 * trips * 1e-3)
+    assert row["sim/wall"] >= 0
 
 
 def test_more_robots_than_queue_places_wait_beneath_their_pods():
