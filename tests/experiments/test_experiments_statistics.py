@@ -399,3 +399,26 @@ def test_the_page_on_coverage_is_what_the_command_writes(tmp_path):
     """Half an hour on a busy machine."""
     assert coverage.main(["--page", str(tmp_path / "coverage.md")]) == 0
     assert (tmp_path / "coverage.md").read_text() == PAGE.read_text()
+
+
+def test_partial_eta_squared_has_an_interval_with_a_single_degree_of_freedom():
+    """Two factors and four runs; with one degree of freedom, F is the square of a noncentral t."""
+    runs = pd.DataFrame({"a": [0, 0, 1, 1], "b": [0, 1, 0, 1], "y": [0.0, 1.0, 20.0, 21.9]})
+    row = anova(runs, "y", ["a", "b"]).loc["a"]
+    assert row["df"] == 1 and row["f"] == pytest.approx((20.45 / 0.45) ** 2)
+    ends = {}
+    for side in ("low", "high"):
+        share = row[f"partial_eta_sq_{side}"]
+        shift = (3 * share / (1 - share)) ** 0.5  # 3: degrees of freedom plus one
+        root = row["f"] ** 0.5
+        ends[side] = stats.nct.cdf(root, 1, shift) - stats.nct.cdf(-root, 1, shift)
+    assert ends["low"] == pytest.approx(0.975, abs=1e-3)
+    assert ends["high"] == pytest.approx(0.025, abs=1e-3)
+
+
+def test_an_effect_that_explains_almost_everything_does_not_break_the_table():
+    """F is too large for its distribution to be computed: no interval, but everything else."""
+    small = 1e-5 * np.array([1, -1, -1, 1, -1, 1, 1, -1])
+    runs = pd.DataFrame({"a": [0] * 4 + [1] * 4, "y": np.repeat([0.0, 1.0], 4) + small})
+    row = anova(runs, "y", ["a"]).loc["a"]
+    assert row["f"] > 1e9 and row["p"] < 1e-20 and row["eta_sq"] > 0.999
