@@ -233,11 +233,10 @@ def means(
     decimals: dict[tuple[str, str], int] = {}
     for column in columns:
         found = per_arm(frame, column, confidence=confidence, method=method, by=by)
-        label = column
-        parts[label, "mean"], parts[label, HALF] = found["mean"], found["half_width"]
+        parts[column, "mean"], parts[column, HALF] = found["mean"], found["half_width"]
         shown = digits(found["half_width"], found["mean"])
-        decimals |= {(label, "mean"): shown, (label, HALF): shown}
-        counts[label] = found["count"]
+        decimals |= {(column, "mean"): shown, (column, HALF): shown}
+        counts[column] = found["count"]
     made = _with_counts(parts, counts, "seeds")
     caption = (
         f"Means over seeds with {100 * confidence:g}% confidence intervals ({_called(method)})."
@@ -265,19 +264,20 @@ def differences(
         column: against(frame, column, baseline, confidence=confidence, method=method, by=by)
         for column in columns
     }
-    p_values = pd.concat([table["p"] for table in found.values() if "p" in table], keys=list(found))
+    if empty := [column for column, table in found.items() if table.empty]:
+        raise InputError(f"column {empty[0]}: no arm with values to compare with {baseline}")
+    p_values = pd.concat([table["p"] for table in found.values()], keys=list(found))
     corrected = holm(p_values)
     parts = {}
     counts: dict[str, pd.Series] = {}
     decimals: dict[tuple[str, str], int] = {}
     for column, table in found.items():
-        label = column
         half = (table["high"] - table["low"]) / 2
-        parts[label, "difference"], parts[label, HALF] = table["difference"], half
-        parts[label, "p"] = corrected[column]
+        parts[column, "difference"], parts[column, HALF] = table["difference"], half
+        parts[column, "p"] = corrected[column]
         shown = digits(half, table["difference"])
-        decimals |= {(label, "difference"): shown, (label, HALF): shown, (label, "p"): 4}
-        counts[label] = table["pairs"]
+        decimals |= {(column, "difference"): shown, (column, HALF): shown, (column, "p"): 4}
+        counts[column] = table["pairs"]
     made = _with_counts(parts, counts, "pairs")
     apart = independent(frame)
     paired, used = ("independent seeds", "Welch") if apart else ("paired by seed", _called(method))

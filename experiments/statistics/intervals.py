@@ -113,7 +113,9 @@ def per_arm(
     """
     require(frame, by, column)
     rows = {}
-    for arm, values in frame.groupby(by, sort=False)[column]:
+    for arm, given in frame.groupby(by, sort=False)[column]:
+        # counts that a run does not have, such as charges without batteries, are NA, not nan
+        values = pd.Series(given.to_numpy(dtype=float, na_value=np.nan))
         found = interval(values, confidence, method)
         rows[arm] = {
             "count": found.count,

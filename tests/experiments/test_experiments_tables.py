@@ -299,3 +299,19 @@ def test_the_caption_states_the_confidence_unrounded(results, confidence, percen
     base = "robots=8,psa=nearest"
     apart = tables.differences(frame, ["units_per_h"], base, confidence=confidence)
     assert f"with {percent} confidence" in apart.caption
+
+
+def test_counts_that_some_runs_do_not_have():
+    """As `charges`, which is NA in a run without batteries."""
+    charges = pd.array([1, None, 3, 5, None, None], dtype="Int64")
+    frame = pd.DataFrame({"arm": [*"aabbcc"], "replication": [1, 2] * 3, "charges": charges})
+    found = tables.means(frame, ["charges"]).frame
+    assert found["charges", "mean"].tolist() == pytest.approx([1.0, 4.0, float("nan")], nan_ok=True)
+    assert found["seeds", ""].tolist() == [1, 2, 0]
+    apart = tables.differences(frame, ["charges"], "a").frame
+    assert apart.loc["b", ("charges", "difference")] == 2.0
+    assert apart.loc["b", ("pairs", "")] == 1
+    for baseline, arms in (("a", "ac"), ("b", "b")):
+        some = frame[frame["arm"].isin([*arms])]
+        with pytest.raises(InputError, match=f"no arm with values to compare with {baseline}"):
+            tables.differences(some, ["charges"], baseline)
