@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+import pandas as pd
 
 from rmfs.errors import InputError
 from rmfs.experiments.figures.style import COLOURS, axis_label
@@ -12,7 +13,6 @@ from rmfs.experiments.statistics import per_arm
 from rmfs.measure.dictionary import better_of
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
@@ -25,19 +25,21 @@ ARROWS = {"more": ("→", "↑"), "less": ("←", "↓")}
 def front(x: pd.Series, y: pd.Series, x_goal: Goal, y_goal: Goal) -> list[str]:
     """Return the arms that no other arm dominates, sorted by x.
 
-    An arm dominates another if it is at least as good in both measures and better in one.
+    An arm dominates another if it is at least as good in both measures and better in one. Arms
+    without a value in one of the measures are left out.
 
     Parameters
     ----------
     x, y
         Means, indexed by arm.
     """
-    a = x.to_numpy(float) * (1 if x_goal == "more" else -1)
-    b = y.reindex(x.index).to_numpy(float) * (1 if y_goal == "more" else -1)
+    both = pd.concat([x, y.reindex(x.index)], axis=1, keys=["x", "y"]).dropna()
+    a = both["x"].to_numpy(float) * (1 if x_goal == "more" else -1)
+    b = both["y"].to_numpy(float) * (1 if y_goal == "more" else -1)
     no_worse = (a[:, None] >= a[None, :]) & (b[:, None] >= b[None, :])
     better = (a[:, None] > a[None, :]) | (b[:, None] > b[None, :])
     beaten = (no_worse & better).any(axis=0)
-    left = x.loc[~np.asarray(beaten)]
+    left = both["x"].loc[~np.asarray(beaten)]
     return list(left.sort_values(kind="stable").index)
 
 
@@ -84,7 +86,7 @@ def pareto(
         linewidth=1,
     )
     best = front(across["mean"], upward["mean"], *goals)
-    line = np.array([[across["mean"][arm], upward["mean"][arm]] for arm in best])
+    line = np.array([[across["mean"][arm], upward["mean"][arm]] for arm in best]).reshape(-1, 2)
     ax.plot(line[:, 0], line[:, 1], "o-", color=COLOURS[1], markersize=5, zorder=3)
     for (x_mean, y_mean), arms in _at_same_place(best, line).items():
         ax.annotate(

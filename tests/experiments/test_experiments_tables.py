@@ -315,3 +315,11 @@ def test_counts_that_some_runs_do_not_have():
         some = frame[frame["arm"].isin([*arms])]
         with pytest.raises(InputError, match=f"no arm with values to compare with {baseline}"):
             tables.differences(some, ["charges"], baseline)
+
+
+def test_an_arm_without_a_value_is_not_on_the_front():
+    nan = float("nan")
+    robots = pd.Series({"a": 4.0, "b": 8.0, "c": 6.0, "d": nan})
+    units = pd.Series({"a": 100.0, "b": 200.0, "c": nan, "d": 300.0})
+    assert front(robots, units, "less", "more") == ["a", "b"]
+    assert front(robots[["c"]], units, "less", "more") == []
