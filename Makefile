@@ -37,11 +37,17 @@ test: setup ## Run the tests of the Rust crate and of the Python packages
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --benchmark-disable
 
 .PHONY: lint
-lint: setup ## Check style, types, import rules and the Rust crate
+lint: lint-python lint-rust ## Check style, types, import rules and the Rust crate
+
+.PHONY: lint-python
+lint-python: setup
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+.PHONY: lint-rust
+lint-rust: setup
 	$(CARGO) fmt --manifest-path $(CRATE)/Cargo.toml --check
 	$(CARGO) clippy $(MANIFEST) --all-targets -- -D warnings
 

@@ -1,5 +1,6 @@
 """Makes what lies beside this file importable from the tests in all folders; bounds every run."""
 
+import gc
 import signal
 
 import pytest
@@ -14,6 +15,12 @@ from tests.simulation.energy_ledger import EnergyLedger
 
 # a shell ignores SIGINT in what it puts into the background, and children inherit that
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_finish():
+    """Modules and tests stay, so that no collection of garbage need look at them."""
+    gc.collect()
+    gc.freeze()
 
 
 ROBOT_HOURS = 100.0

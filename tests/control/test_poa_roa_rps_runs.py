@@ -14,6 +14,8 @@ from rmfs.control.problems import Problem
 from rmfs.simulation.kernel import Kernel
 
 WAITING_FOR_ROA = ("nearest", "reactive")
+SHORT = {"rollout": {"candidates": 2, "samples": 2, "horizon_s": 20.0}}
+"""With its defaults, trials would take most of the time of this file."""
 NOT_BY_DEFAULT: list[tuple[str, dict[str, Any]]] = [
     ("poa", {"name": "first-come", "station": "least-busy", "fast_lane": True}),
     ("poa", {"name": "slack", "station": "least-busy"}),
@@ -33,9 +35,9 @@ NOT_BY_DEFAULT: list[tuple[str, dict[str, Any]]] = [
 
 
 def cases() -> list[tuple[str, dict[str, Any]]]:
-    """All rules with their defaults, then some with other parameters."""
+    """All rules with their defaults, but for `SHORT`, then some with other parameters."""
     names = [
-        (str(problem), {"name": name})
+        (str(problem), {"name": name} | SHORT.get(name, {}))
         for problem in (Problem.POA, Problem.ROA, Problem.RPS)
         for name in registry.built_in(problem)
         if not registry.find(problem, name).is_dummy

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 from math import exp
 
 import numpy as np
@@ -27,6 +28,11 @@ def share(level: float) -> float:
     return 1.0 / (1.0 + exp((level - 250.0) / 40.0))
 
 
+@cache
+def drawn(seed: int) -> float:
+    return np.random.default_rng(seed).normal()
+
+
 class Noisy:
     """Responses with noise by seed, part of which the levels share; keeps what it was asked."""
 
@@ -36,7 +42,7 @@ class Noisy:
 
     def __call__(self, level, seeds):
         self.asked.append((level, seeds))
-        shared = [np.random.default_rng(seed).normal() for seed in seeds]
+        shared = [drawn(seed) for seed in seeds]
         own = [np.random.default_rng([seed, int(1000 * level)]).normal() for seed in seeds]
         noise = np.array(shared) * 0.8 + np.array(own) * 0.6
         return self.mean(level) + self.noise * noise

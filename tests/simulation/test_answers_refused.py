@@ -16,7 +16,7 @@ def run(pacing: str, **parameters: object) -> HandMade:
     """Let two orders arrive at 1 s."""
     made = HandMade(
         {"robots": 1},
-        pacing=pacing_settings(pacing),
+        pacing=pacing_settings(pacing, [(["workers"], 1)] if pacing == "wall" else []),
         poa={"name": "answering:Answering", **parameters},
     )
     made.stock(0, s0=2)

@@ -40,7 +40,9 @@ class Ticks:
 
 
 def walled(orders_at=(1.0,), speed: float = SPEED, patience_s: float = 60.0, **parameters):
-    overrides = [(["speed"], speed), (["patience_s"], patience_s)]
+    # starting a worker takes longer than most of these tests
+    workers = parameters.get("at_once", 1)
+    overrides = [(["speed"], speed), (["patience_s"], patience_s), (["workers"], workers)]
     made = HandMade(
         {"robots": 1},
         pacing=pacing_settings("wall", overrides),
