@@ -5,8 +5,6 @@ from __future__ import annotations
 from array import array
 from dataclasses import dataclass, field
 
-import numpy as np
-
 
 @dataclass(slots=True)
 class DecisionStatistics:
@@ -42,10 +40,6 @@ class DecisionStatistics:
     def wall_s(self) -> float:
         """Total wall time of all calls, in s."""
         return sum(self.wall_ns) / 1e9
-
-    def wall_quantile_s(self, share: float) -> float:
-        """Return a quantile (`share`: 0 to 1) of the wall time of calls in s; nan without calls."""
-        return float(np.quantile(self.wall_ns, share)) / 1e9 if self.wall_ns else float("nan")
 
     def count(self, decisions: int, now_s: float) -> None:
         """Count the decisions of a call."""

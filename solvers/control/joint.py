@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, ClassVar, TypeVar
 
 import numpy as np
 
@@ -10,7 +10,8 @@ from rmfs.control.asks import By
 from rmfs.control.base import Parameters
 from rmfs.control.decisions import AssignLines, AssignOrder, BringForBundles, BringForPicks, Rest
 from rmfs.control.pps.lexicographic import Lexicographic
-from rmfs.control.ta import TaskAllocation
+from rmfs.control.problems import Problem, Trigger
+from rmfs.control.ta import WORK, TaskAllocation
 from rmfs.control.ta.rest import RestPlaces, RestRule
 from rmfs.control.ta.stations import keeper_of
 from rmfs.world.tasks import ReplenishTask
@@ -35,6 +36,18 @@ class JointAllocation(TaskAllocation[P]):
     consulting other controllers.
     """
 
+    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.POA, Problem.PPS})
+    subscriptions = WORK | {
+        Trigger.NEW_ORDER,
+        Trigger.ORDER_CUT,
+        Trigger.ORDER_COMPLETED,
+        Trigger.BUNDLE_STORED,
+        Trigger.STATION_SWITCHED,
+        Trigger.POD_AT_STATION,
+    }
+    hears = frozenset(
+        {Trigger.NEW_ORDER, Trigger.ORDER_CUT, Trigger.POD_AT_STATION, Trigger.ROBOT_FREE}
+    )
     goes_on = True
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator, rest: RestRule) -> None:

@@ -33,6 +33,21 @@ _OF_ANSWERS: dict[str, Callable[[Answer], Any]] = {
 }
 """Columns that describe answers in the tables `decisions` and `answers`."""
 
+_EFFORT = (
+    Column(
+        "work",
+        REAL,
+        "",
+        "Effort of the solver, in a unit of the back end that does not depend on the machine",
+    ),
+    Column(
+        "built",
+        REAL,
+        "",
+        "Size of the solver's model (number of nonzeros); the effort of building it is not "
+        "part of `work`",
+    ),
+)
 
 DECISIONS = (
     Column(
@@ -89,19 +104,7 @@ DECISIONS = (
         "Relative gap: gap_abs divided by the cost of the pods called (pile-on models; empty "
         "if no pod is called) or by abs(objective) (other models)",
     ),
-    Column(
-        "work",
-        REAL,
-        "",
-        "Effort of the solver, in a unit of the back end that does not depend on the machine",
-    ),
-    Column(
-        "built",
-        REAL,
-        "",
-        "Size of the solver's model (number of nonzeros); the effort of building it is not "
-        "part of `work`",
-    ),
+    *_EFFORT,
     Column("build_s", REAL, "s", "Wall time of building the solver's model", measured=True),
     Column(
         "solve_s", REAL, "s", "Wall time of the solver without building the model", measured=True
@@ -133,19 +136,7 @@ ANSWERS = (
     Column("status", TEXT, "", "As in `decisions`; empty without an answer"),
     Column("objective", REAL, "", "Value of the solution"),
     Column("bound", REAL, "", "Proven lower bound on the value of any solution"),
-    Column(
-        "work",
-        REAL,
-        "",
-        "Effort of the solver, in a unit of the back end that does not depend on the machine",
-    ),
-    Column(
-        "built",
-        REAL,
-        "",
-        "Size of the solver's model (number of nonzeros); the effort of building it is not "
-        "part of `work`",
-    ),
+    *_EFFORT,
     Column(
         "scale",
         REAL,

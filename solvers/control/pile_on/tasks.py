@@ -12,8 +12,7 @@ from rmfs.control.decisions import (
     BringForPicks,
     Park,
 )
-from rmfs.control.problems import Problem, Trigger
-from rmfs.control.ta import WORK
+from rmfs.control.problems import Trigger
 from rmfs.control.ta.rest import RestRule
 from rmfs.control.ta.stations import bring, keeper_of, near_by
 from rmfs.solvers.control.buffer import Buffer
@@ -105,16 +104,6 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
     """
 
     parameters_model = PileOnTasksParameters
-    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.POA, Problem.PPS})
-    subscriptions = WORK | {
-        Trigger.NEW_ORDER,
-        Trigger.ORDER_CUT,
-        Trigger.ORDER_COMPLETED,
-        Trigger.BUNDLE_STORED,
-        Trigger.STATION_SWITCHED,
-        Trigger.POD_AT_STATION,
-    }
-    hears = frozenset(_ASKS)
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.pile_on.question",)
 
     def __init__(

@@ -13,8 +13,7 @@ from rmfs.control.decisions import (
     BringForPicks,
     Park,
 )
-from rmfs.control.problems import Problem, Trigger
-from rmfs.control.ta import WORK
+from rmfs.control.problems import Trigger
 from rmfs.control.ta.stations import bring, keeper_of
 from rmfs.solvers.control.joint import JointAllocation
 from rmfs.solvers.control.planning import snapshot
@@ -62,18 +61,6 @@ class PlanningControl(JointAllocation[PlanningParameters]):
     """
 
     parameters_model = PlanningParameters
-    decides: ClassVar[frozenset[Problem]] = frozenset({Problem.POA, Problem.PPS})
-    subscriptions = WORK | {
-        Trigger.NEW_ORDER,
-        Trigger.ORDER_CUT,
-        Trigger.ORDER_COMPLETED,
-        Trigger.BUNDLE_STORED,
-        Trigger.STATION_SWITCHED,
-        Trigger.POD_AT_STATION,
-    }
-    hears = frozenset(
-        {Trigger.NEW_ORDER, Trigger.ORDER_CUT, Trigger.POD_AT_STATION, Trigger.ROBOT_FREE}
-    )
     optimisers: ClassVar[tuple[str, ...]] = ("rmfs.solvers.control.planning.question",)
 
     def __init__(

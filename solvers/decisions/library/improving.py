@@ -138,7 +138,7 @@ def _tried(
     count = 0
     if decision.recorded is not None:
         count += len(library.enter(decision, decision.recorded, "recorded in the run"))
-    for method, work in _searches(decision, row, effort, number):
+    for method, work in _searches(decision, effort, number):
         now = library.rows[row.question]
         if now.status == OPTIMAL or monotonic() > until:
             break
@@ -163,9 +163,7 @@ def _tried(
     return count
 
 
-def _searches(
-    decision: Decision, row: Row, effort: Effort, number: int
-) -> Iterator[tuple[str, float]]:
+def _searches(decision: Decision, effort: Effort, number: int) -> Iterator[tuple[str, float]]:
     """Yield methods and limits of a round; methods that ignore limits only in the first round."""
     for method in METHODS[decision.family]:
         if method in UNLIMITED and number:

@@ -115,38 +115,6 @@ def solve_by_assignment(
     )
 
 
-def greedy_assign(cost: NDArray[np.float64]) -> NDArray[np.int64] | None:
-    """Repeatedly assign the cheapest pair of a row and a column that are both still free.
-
-    Among equally cheap pairs, the lowest row index takes precedence, then the lowest column index.
-
-    Parameters
-    ----------
-    cost
-        Cost of each pair of row and column, shape (M, N); +inf forbids a pair.
-
-    Returns
-    -------
-    Column of each row, shape (M,). None if some row is left without an allowed free column; this
-    can happen even if an assignment exists.
-    """
-    rows, columns = cost.shape
-    column = np.full(rows, -1, np.int64)
-    taken = np.zeros(columns, bool)
-    left = rows
-    flat = cost.ravel()
-    # a stable sort, so that ties keep the order of the indices
-    for pair in np.argsort(flat, kind="stable").tolist():
-        row, place = divmod(pair, columns)
-        if math.isinf(flat[pair]) or not left:
-            break
-        if column[row] < 0 and not taken[place]:
-            column[row] = place
-            taken[place] = True
-            left -= 1
-    return None if left else column
-
-
 def assignment_bound(cost: NDArray[np.float64], column: NDArray[np.int64]) -> float:
     """Return a lower bound on the cost of every assignment, derived from a given assignment.
 

@@ -61,7 +61,7 @@ def formulate(data: Charging) -> Formulation[ChargePlan]:
     return Formulation(
         builder.build(),
         lambda plan: _encode(data, table, plan),
-        lambda values: _decode(data, table, values),
+        lambda values: _decode(table, values),
         lambda plan: objective(data, plan),
         lambda plan: violations(data, plan),
         lambda names: _name(data, table, names),
@@ -76,7 +76,7 @@ def _encode(data: Charging, table: Columns, plan: ChargePlan) -> Floats:
     return np.concatenate([chosen, missed.ravel().astype(np.float64)])
 
 
-def _decode(data: Charging, table: Columns, values: Floats) -> ChargePlan:
+def _decode(table: Columns, values: Floats) -> ChargePlan:
     chosen = values[: len(table.robot)]
     rows = [
         low + int(chosen[low:high].argmax())

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rmfs.solvers.models import ModelError
-from rmfs.solvers.models.backends.assignment import assign, assignment_bound, greedy_assign
+from rmfs.solvers.models.backends.assignment import assign, assignment_bound
 from rmfs.solvers.models.backends.flow import Network, flow_bound, min_cost_flow
 from rmfs.solvers.models.checks import costs
 
@@ -110,9 +110,7 @@ def test_an_assignment_bound_holds_for_any_assignment_and_proves_the_best() -> N
         assert assignment_bound(cost, other) <= value + 1e-9
 
 
-def test_ties_and_dead_ends_of_the_greedy_assignment() -> None:
-    assert greedy_assign(np.zeros((2, 3))).tolist() == [0, 1]  # type: ignore[union-attr]
-    assert greedy_assign(np.array([[1.0, 2.0], [1.0, inf]])) is None
+def test_the_cheapest_pair_first_may_be_a_dead_end() -> None:
     assert assign(np.array([[1.0, 2.0], [1.0, inf]])).column.tolist() == [1, 0]  # type: ignore[union-attr]
 
 
