@@ -87,6 +87,7 @@ def test_runs_that_have_ended_are_freed(monkeypatch: pytest.MonkeyPatch) -> None
     finally:
         gc.unfreeze()
         gc.set_threshold(*thresholds)
+        gc.freeze()  # as tests/conftest.py has done
     assert len(runs) > 30
 
 
