@@ -281,8 +281,9 @@ def differences(
     made = _with_counts(parts, counts, "pairs")
     apart = independent(frame)
     paired, used = ("independent seeds", "Welch") if apart else ("paired by seed", _called(method))
+    percent = f"{100 * confidence:g}%"
     caption = (
-        f"Arm minus {baseline}, {paired}, with {100 * confidence:g}% confidence intervals ({used}); "
+        f"Arm minus {baseline}, {paired}, with {percent} confidence intervals ({used}); "
         f"p values of {'Welch' if apart else 'paired t'} tests, corrected by Holm over the table."
     )
     return Table(made, decimals, caption)

@@ -74,7 +74,7 @@ def sites(
 
 
 def levels(frame: pd.DataFrame) -> Table:
-    """Return units per hour and delay without guidance, by site."""
+    """Return the results without guidance, by site: units per hour and delay."""
     rows: Rows = {}
     for site, of in sites(frame):
         delay_s, share = of["trip_delay_mean_s"][NOTHING], of["trip_delay_share"][NOTHING]

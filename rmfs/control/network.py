@@ -126,7 +126,7 @@ class Network(Model):
 
 
 def start(kind: str) -> Network:
-    """Return the untrained network of a kind of question, which has no layers."""
+    """Return the untrained network for a kind of question; it has no layers."""
     weights, constant = STARTS[kind]
     return Network(linear=weights, decline=None if constant is None else {CONSTANT: constant})
 

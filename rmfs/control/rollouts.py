@@ -96,8 +96,8 @@ def base_rule(
     Raises
     ------
     InputError
-        If there is no such rule, its parameters are invalid, or it cannot be a base rule because it
-        asks optimisers, is a dummy (`is_dummy`) or decides further problems.
+        If no rule has this name, if its parameters are invalid, or if it cannot be a base rule
+        (because it asks optimisers, is a dummy, or decides further problems).
     """
     choice = choose(problem, parameters.base, f"{problem}.base")
     rule = choice.controller

@@ -48,9 +48,10 @@ class JointParameters(SearchParameters):
     horizon_s: NotNegative = 90.0
     """With `when_needed` or `by_work`, seconds of work below which a station needs another pod."""
     by_work: bool = False
-    """Whether pods are called only for stations with less than `horizon_s` of work on pods that are
-    present, under way or called, even if orders at stations with more work still lack pods. This
-    prevents queues at one station while another runs out of work."""
+    """Whether pods are called only for stations that have less than `horizon_s` of work left. Work
+    on pods that are present, under way or called counts. Other stations get no pods, even if some
+    of their orders still lack one. This prevents queues at one station while another runs out of
+    work."""
     buffer_s: NotNegative = 3.0
     """Minimum time, in seconds, between two questions to the optimiser, so that one question covers
     several decisions."""
