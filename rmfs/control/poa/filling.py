@@ -27,9 +27,9 @@ class FastLaneParameters(Parameters):
     """Parameters of POA rules with a fast lane."""
 
     fast_lane: bool = False
-    """Whether there is a fast lane: an order is assigned to a station before other orders if the pod
-    at the head of the station's queue can complete it. Stations with several slots reserve one of
-    them for such orders."""
+    """Whether there is a fast lane: an order is assigned to a station before other orders if the
+    pod at the head of the station's queue can complete it. Stations with several slots reserve one
+    of them for such orders."""
     fast_lane_tie_breaker: TieBreaker = "due-time"
     """Which of several orders suitable for the fast lane comes first: the one due first
     (`due-time`), the one that arrived first (`first-come`), or a random one (`random`)."""
