@@ -358,7 +358,7 @@ def test_compare_refuses_several_rows_for_a_seed(tmp_path, monkeypatch, capsys):
     pd.DataFrame({"seed": [1, 2, 1, 2], "units_per_h": [1.0, 2.0, 9.0, 9.0]}).to_csv("a.csv")
     pd.DataFrame({"seed": [1, 2], "units_per_h": [1.0, 2.0]}).to_csv("b.csv")
     assert main(["compare", "a.csv", "b.csv"]) == 2
-    assert "a.csv: has several rows for seed 1" in capsys.readouterr().err
+    assert "a.csv: has several rows with seed 1" in capsys.readouterr().err
 
 
 def test_compare_does_not_pair_arms_with_seeds_of_their_own(design, capsys):
