@@ -343,7 +343,7 @@ def _partial_interval(
         most = 4 * f * df + 100
         while (beyond := excess(most)) > 0:
             most *= 2  # with very few degrees of freedom, the interval is wide
-        if beyond != beyond:
+        if np.isnan(beyond):
             return float("nan")  # the distribution cannot be computed for so large an F
         noncentrality = float(optimize.brentq(excess, 0.0, most))
         return noncentrality / (noncentrality + df + rest_df + 1)

@@ -68,7 +68,7 @@ class Task(ABC):
         return layouts.load(self.layout, own)
 
     def other_seeds(self) -> list[int]:
-        """Return twice as many new seeds: the integers after the largest of `seeds`."""
+        """Return 2 n new seeds for the n `seeds`: the integers after the largest of these."""
         return [max(self.seeds) + 1 + number for number in range(2 * len(self.seeds))]
 
     @abstractmethod
