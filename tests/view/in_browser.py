@@ -19,3 +19,8 @@ show = chromium.show
 
 def state(page: Any, name: str) -> Any:
     return page.evaluate(f"window.rmfs.store.state.{name}")
+
+
+def put(page: Any, change: str) -> None:
+    """Change what is shown, and draw it at once."""
+    page.evaluate(f"window.rmfs.store.set({{ {change} }}); window.rmfs.picture(); null")

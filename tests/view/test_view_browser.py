@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from in_browser import needs_browser, show, state
+from in_browser import needs_browser, put, show, state
 
 from rmfs.measure import RunFolder
 from rmfs.measure.checker import motion
@@ -55,7 +55,7 @@ def expected_positions(run: RunFolder, times: np.ndarray) -> np.ndarray:
 
 
 def test_positions_agree_with_the_checker_at_a_thousand_instants(
-    page: Any, address: str, runs: list[RunFolder]
+    address: str, page: Any, runs: list[RunFolder]
 ) -> None:
     show(page, address)
     times = np.random.default_rng(8).uniform(0, 660, 1000)
@@ -65,7 +65,7 @@ def test_positions_agree_with_the_checker_at_a_thousand_instants(
     assert np.abs(shown - expected).max() < 0.001
 
 
-def test_pods_are_where_the_run_left_them(page: Any, address: str, runs: list[RunFolder]) -> None:
+def test_pods_are_where_the_run_left_them(address: str, page: Any, runs: list[RunFolder]) -> None:
     show(page, address)
     where = page.evaluate("window.rmfs.runs[0].places.of.map(steps => steps.at(660e6))")
     pods = runs[0].table("pods")
@@ -77,7 +77,7 @@ def test_pods_are_where_the_run_left_them(page: Any, address: str, runs: list[Ru
 
 
 def test_the_heat_map_counts_what_the_run_counted(
-    page: Any, address: str, runs: list[RunFolder]
+    address: str, page: Any, runs: list[RunFolder]
 ) -> None:
     show(page, address)
     visits = page.evaluate("Array.from(window.rmfs.runs[0].passages.count('visits', 60e6, 660e6))")
@@ -88,7 +88,7 @@ def test_the_heat_map_counts_what_the_run_counted(
     assert difference.sum() < 0.01 * counted.sum()
 
 
-def test_it_plays_seeks_and_changes_the_view(page: Any, address: str) -> None:
+def test_it_plays_seeks_and_changes_the_view(address: str, page: Any) -> None:
     show(page, address)
     before = state(page, "time_s")
     page.click("#play")
@@ -122,9 +122,9 @@ def test_it_plays_seeks_and_changes_the_view(page: Any, address: str) -> None:
         assert state(page, name) == value
 
 
-def test_a_click_selects_a_robot_and_a_link_restores_the_view(page: Any, address: str) -> None:
+def test_a_click_selects_a_robot_and_a_link_restores_the_view(address: str, page: Any) -> None:
     show(page, address)
-    page.evaluate("window.rmfs.store.set({ time_s: 200 })")
+    put(page, "time_s: 200")
     chosen = None
     canvas = page.locator(".pane canvas").bounding_box()
     for robot in range(12):
@@ -159,8 +159,7 @@ def test_two_runs_share_one_clock_in_one_file(
     export(runs, tmp_path / "two.html")
     show(page, (tmp_path / "two.html").as_uri())
     assert page.locator(".pane").count() == 2
-    page.evaluate("window.rmfs.store.set({ time_s: 400 })")
-    page.wait_for_timeout(500)
+    put(page, "time_s: 400")
     rows = page.evaluate("window.rmfs.panes.map(pane => pane.poses.map(pose => [pose.x, pose.y]))")
     times = np.array([400.0])
     for run, shown in zip(runs, rows, strict=True):

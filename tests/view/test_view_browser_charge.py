@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from in_browser import needs_browser, show
+from in_browser import needs_browser, put, show
 
 import rmfs
 from rmfs.measure import RunFolder, load_run, write_run
@@ -39,10 +39,6 @@ def shown(page: Any, charged: RunFolder) -> Iterator[Any]:
     with served(replay_server([charged])) as url:
         show(page, url)
         yield page
-
-
-def put(page: Any, change: str) -> None:
-    page.evaluate(f"rmfs.store.set({{ {change} }}); rmfs.picture(); null")
 
 
 def check_levels(page: Any, run: RunFolder) -> None:

@@ -53,7 +53,7 @@ def known_s(page: Any) -> float:
 
 
 def test_a_run_is_watched_paused_stepped_and_changed(
-    page: Any, started: Any, tmp_path: Path
+    started: Any, page: Any, tmp_path: Path
 ) -> None:
     process, url = started(*RUN, "--speed", "20", "--out", "run")
     show(page, url)
@@ -91,7 +91,7 @@ def test_a_run_is_watched_paused_stepped_and_changed(
     assert shown == load_run(tmp_path / "run").footprint["units_picked"]
 
 
-def test_closing_the_page_lets_the_run_go_on(page: Any, started: Any, tmp_path: Path) -> None:
+def test_closing_the_page_lets_the_run_go_on(started: Any, page: Any, tmp_path: Path) -> None:
     process, url = started(*RUN, "--out", "run", "--speed", "50", "--await-page")
     show(page, url)
     page.click("#live-pause")
@@ -104,7 +104,7 @@ def test_closing_the_page_lets_the_run_go_on(page: Any, started: Any, tmp_path: 
         assert first.table(table).equals(second.table(table)), table
 
 
-def test_the_form_has_words_units_and_a_preview(page: Any, started: Any) -> None:
+def test_the_form_has_words_units_and_a_preview(started: Any, page: Any) -> None:
     _, url = started("view", "--no-open")
     page.goto(url)
     counts = page.locator("#preview .counts:not(:empty)")
@@ -137,7 +137,7 @@ def test_the_form_has_words_units_and_a_preview(page: Any, started: Any) -> None
     )
 
 
-def test_the_form_starts_a_run(page: Any, started: Any, tmp_path: Path) -> None:
+def test_the_form_starts_a_run(started: Any, page: Any, tmp_path: Path) -> None:
     _, url = started("view", "--no-open")
     page.goto(url)
     page.wait_for_selector("#start-run")

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from in_browser import needs_browser, show, state
+from in_browser import needs_browser, put, show, state
 
 from rmfs.measure import RunFolder
 from rmfs.view.answers import replay_server
@@ -43,8 +43,7 @@ AT = """([kind, index]) => {
 def opened(page: Any, runs: list[RunFolder]) -> Iterator[Any]:
     with replay_server(runs[:1]) as server, served(server) as url:
         show(page, url)
-        page.evaluate("window.rmfs.store.set({ time_s: 300 })")
-        page.wait_for_timeout(300)
+        put(page, "time_s: 300")
         yield page
 
 
@@ -73,8 +72,7 @@ def test_replay_opens_at_the_end_of_the_warm_up_and_plays(
 
 def test_the_mouse_is_told_what_is_under_it(opened: Any) -> None:
     # at the beginning nobody is at a station
-    opened.evaluate("window.rmfs.store.set({ time_s: 0 })")
-    opened.wait_for_timeout(500)
+    put(opened, "time_s: 0")
     free = opened.evaluate(
         "(() => { const { layout } = rmfs.runs[0];"
         " return layout.isStorage.findIndex((is, v) => !is && !layout.isQueue[v]"

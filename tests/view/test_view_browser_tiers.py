@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from in_browser import needs_browser, show, state
+from in_browser import needs_browser, put, show, state
 
 import rmfs
 from rmfs.measure import RunFolder, load_run, write_run
@@ -40,11 +40,6 @@ def shown(page: Any, tiers: RunFolder) -> Iterator[Any]:
     with served(replay_server([tiers])) as url:
         show(page, url)
         yield page
-
-
-def put(page: Any, change: str) -> None:
-    """Change what is shown, and draw it."""
-    page.evaluate(f"rmfs.store.set({{ {change} }}); rmfs.picture(); null")
 
 
 def drawn(page: Any) -> str:
