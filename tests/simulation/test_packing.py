@@ -6,11 +6,14 @@ from heapq import heappop, heappush
 
 import numpy as np
 import pytest
+from hand_made import HandMade
 
 import rmfs
+from rmfs.control.decisions import AssignLines
 from rmfs.errors import InputError
 from rmfs.measure.dictionary import reproducible
 from rmfs.measure.measures.packing import Packing
+from rmfs.observer import Observer
 from rmfs.world import verify
 
 OWN = {column.name for column in Packing.columns}
@@ -224,6 +227,48 @@ def test_looking_ahead_goes_on_with_it():
     run = rmfs.simulate("small", "small-arrivals", "sequ", seed=1, set=given | packing)
     assert run.footprint["orders_packed"] == run.footprint["orders_completed"] > 0
     verify(run.world)
+
+
+class Held(Observer):
+    """Station, begin and end of each wait of a tote at its station."""
+
+    def __init__(self):
+        self.waits = []
+
+    def tote_held(self, station, from_s, to_s):
+        self.waits.append((station, from_s, to_s))
+
+
+@pytest.mark.parametrize("slot_for", ["part", "order"])
+def test_the_last_part_leaves_with_the_one_that_is_carried_by_hand(slot_for):
+    """An order that lacks SKU 4 keeps the only slot; both parts of another order wait.
+
+    When the first is carried away after 100 s, the second is the last of its order: it needs no
+    slot, although the first is still on its way.
+    """
+    held = Held()
+    packing = {"slots": 1, "slot_for": slot_for, "by_hand_after_s": 100.0}
+    made = HandMade(
+        {"pick_stations": 2},
+        {"packing": {**packing, "travel": {"constant_s": 50.0}}},
+        observers=(held,),
+    )
+    made.stock(0, s0=1, s1=1)
+    made.stock(1, s2=1)
+    made.order(0.0, s0=1, s4=1)
+    made.order(0.0, s1=1, s2=1)
+
+    def assign():
+        blocking, waiting = made.ledger.orders.values()
+        for order, station, sku in [(blocking, 0, 0), (blocking, 1, 4), (waiting, 0, 1)]:
+            made.simulation.applying(AssignLines(order, station, [sku]), None)
+        made.simulation.applying(AssignLines(waiting, 1, [2]), None)
+
+    made.at(0.0, assign)
+    made.run()
+    first, last = (time_s + 10.0 for time_s, _, order, *_ in made.diary.of("unit") if order == 1)
+    assert held.waits == [(0, first, first + 100.0), (1, last, first + 100.0)]
+    verify(made.world)
 
 
 @pytest.mark.parametrize(

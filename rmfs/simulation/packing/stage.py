@@ -104,8 +104,8 @@ class PackingStage(Observer):
             self._agenda.after(self._travel_us[tote.station], partial(self._arrive, tote))
         else:
             self._arrive(tote)
-        if last:
-            self._let_go()  # parts that had to wait for a slot need none any more
+        if by_hand:
+            self._let_go()  # another part of the order may need no slot of its own any more
 
     def order_assigned(self, order: Order) -> None:
         """Stop holding an order, or a part of one, to which further lines have been assigned."""
