@@ -4,7 +4,9 @@ A reader who did not write them marks whatever has to be read twice. The seed ma
 repeatable: the same seed draws the same names as long as no page or public name comes or goes.
 
 Strict readers mark sentences of any text. With `--among`, as many docstrings of other packages are
-mixed in, so that readers do not know which are ours, and the rates can be compared.
+mixed in, so that readers do not know which are ours, and the rates can be compared. Readers see
+each docstring as in a reference or an editor: with its signature, and with the summaries of its
+class and module.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ import importlib.util
 import random
 import re
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,11 +38,18 @@ FURTHER = re.compile(r"(Examples?|References|See Also|Notes)\n-{3,}\n|>>> |\.\. 
 
 @dataclass(frozen=True)
 class Docstring:
-    """A public docstring, its place and its text."""
+    """A public docstring: its place, its name, its text, and what a reader sees beside it.
+
+    Attributes
+    ----------
+    context
+        The summaries of the module and of the class that it belongs to, and its own signature.
+    """
 
     place: str
     name: str
     text: str
+    context: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         """The text below the name and the place."""
@@ -91,7 +100,7 @@ def others(package: str) -> list[Docstring]:
         for one in _of_module(path, folder.parent):
             text = FURTHER.split(one.text)[0].rstrip()
             if text and text.count("\n") < LONGEST:
-                found.setdefault(text, Docstring(one.place, one.name, text))
+                found.setdefault(text, replace(one, text=text))
     return list(found.values())
 
 
@@ -99,25 +108,39 @@ def _of_module(path: Path, root: Path = ROOT) -> Iterator[Docstring]:
     tree = ast.parse(path.read_text("utf-8"))
     place = path.relative_to(root).as_posix()
     module = place.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
-    for name, node in _public(tree, module):
+    for name, node, around in _public(tree, module):
         text = ast.get_docstring(node)
         if text:
             line = 1 if isinstance(node, ast.Module) else node.lineno
-            yield Docstring(f"{place}:{line}", name, text)
+            yield Docstring(f"{place}:{line}", name, text, around)
 
 
 Documented = ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
 
 
-def _public(node: Documented, name: str) -> Iterator[tuple[str, Documented]]:
-    """Walk through a module and its classes, but not into functions."""
-    yield name, node
+def _public(
+    node: Documented, name: str, around: tuple[str, ...] = ()
+) -> Iterator[tuple[str, Documented, tuple[str, ...]]]:
+    """Walk through a module and its classes, but not into functions; also yield the context."""
+    signature = () if isinstance(node, ast.Module) else (_signature(node),)
+    yield name, node, (*around, *signature)
     if isinstance(node, ast.Module | ast.ClassDef):
+        title = "module" if isinstance(node, ast.Module) else f"class {node.name}"
+        summary = (ast.get_docstring(node) or "").partition("\n\n")[0].replace("\n", " ")
+        inner = (*around, f"{title}: {summary}") if summary else around
         for child in node.body:
             if not isinstance(child, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
                 continue
             if not child.name.startswith("_"):
-                yield from _public(child, f"{name}.{child.name}")
+                yield from _public(child, f"{name}.{child.name}", inner)
+
+
+def _signature(node: ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) -> str:
+    """The signature of a function, or the name of a class and of those that it is derived from."""
+    if isinstance(node, ast.ClassDef):
+        return f"class {node.name}({', '.join(map(ast.unparse, node.bases))})"
+    returns = f" -> {ast.unparse(node.returns)}" if node.returns else ""
+    return f"def {node.name}({ast.unparse(node.args)}){returns}"
 
 
 def draw(seed: int, number_of_pages: int, number: int) -> tuple[list[str], list[Docstring]]:
@@ -148,7 +171,16 @@ def write_mixed(drawn: Sequence[Docstring], folder: Path) -> None:
     """Write the docstrings without their origin, numbered, and a key that states the origin."""
     folder.mkdir(parents=True, exist_ok=True)
     blind = [
-        f"## {number}: {one.name.rpartition('.')[2]}\n\n{one.text}\n"
+        "\n".join(
+            [
+                f"## {number}: {one.name.rpartition('.')[2]}",
+                "",
+                *(f"> {line}  " for line in one.context),
+                "",
+                one.text,
+                "",
+            ]
+        )
         for number, one in enumerate(drawn, 1)
     ]
     key = [f"{number},{one.name},{one.place}\n" for number, one in enumerate(drawn, 1)]

@@ -45,7 +45,7 @@ class Candidates:
         return len(self.pods)
 
     def narrowed(self, to: NDArray[np.intp]) -> Candidates:
-        """Return only the candidates with the given indices in `pods`."""
+        """Return a copy that keeps only some candidates; `to` contains their indices in `pods`."""
         return Candidates(self.view, self.robot, self.station, self.pods[to])
 
     def waypoints(self) -> NDArray[np.int32]:
@@ -137,7 +137,7 @@ class PickCandidates(Candidates):
         self._completed: Completed | None = None
 
     def narrowed(self, to: NDArray[np.intp]) -> PickCandidates:
-        """Return only the candidates with the given indices in `pods`."""
+        """Return a copy that keeps only some candidates; `to` contains their indices in `pods`."""
         kept = PickCandidates(
             self.view,
             self.robot,

@@ -31,7 +31,7 @@ class Pace(Protocol):
 
 
 class RealTime:
-    """Timing by the wall clock, without synchronisation: the server has its own clock."""
+    """Timing by the wall clock. It is not synchronised with the server, which has its own clock."""
 
     def __init__(self) -> None:
         self.has_ended = False

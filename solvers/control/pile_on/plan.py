@@ -27,7 +27,7 @@ class Planned:
     Attributes
     ----------
     call
-        The question whose answer contained the item; None if a rule planned it.
+        The call of the optimiser that planned the item; None if a rule planned it.
     """
 
     item: Item
@@ -40,7 +40,7 @@ class Called(NamedTuple):
     Attributes
     ----------
     call
-        The question whose answer contained the decision; None if a rule made it.
+        The call of the optimiser that made the decision; None if a rule made it.
     robot
         The robot that is to fetch the pod; -1 if any robot may.
     """

@@ -58,7 +58,7 @@ class Ahead(PodStorageAssignment[P]):
         return self._buffer.next_event_s
 
     def decide(self) -> Iterator[Ask[Any]]:
-        """Ask the optimiser if no answer is pending and the buffer time (`buffer_s`) is over."""
+        """Ask the optimiser, unless an answer is pending or the buffer time has not passed yet."""
         if not self._buffer.is_over(not self.in_flight):
             return
         robots = [robot for robot in self.view.robots if _will_store(robot)]

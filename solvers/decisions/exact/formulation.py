@@ -1,4 +1,7 @@
-"""The exact program of a question, with named columns, and conversion of solutions to answers."""
+"""The mathematical program that solves a recorded decision to optimality.
+
+Its columns have names, and its solutions are converted to answers to the decision's question.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Programs of the families that the models solve as assignments, as flows, or with Clarabel."""
+"""Exact programs of decisions that the optimisers solve as assignments, flows, or with Clarabel."""
 
 from __future__ import annotations
 

@@ -10,8 +10,9 @@ station (o = R + u, for R robots). The columns state
 - `arrive`, `late`: when the pod of task t arrives at its station, and how late it is.
 
 If a robot does task t after task u and stores the pod of u at place l in between, the pod of t
-arrives only after the robot has finished task u and made the trips. M is a large constant, and
-service, store, fetch and bring are fields of `TaskSequence` (without the ending `_s`):
+arrives only after the robot has finished task u and made the trips. M is a large constant;
+service, store, fetch and bring stand for the fields `service_s`, `store_s`, `fetch_s` and `bring_s`
+of `TaskSequence`:
 
 .. math::
 

@@ -249,11 +249,11 @@ class PartialAssignment:
         return Call(float(gain[best]), station, (int(pods[best]),)) if gain[best] > 0 else None
 
     def settle_prospects(self, call: Call) -> None:
-        """Add the prospects that a call makes possible.
+        """Add the orders without a slot that the called pods can serve as prospects.
 
-        If the called pod serves no placed order, one of the prospects exchanges roles with a placed
-        order: it gets the slot, and the placed order becomes a prospect. If no exchange is
-        possible, the call is cancelled.
+        A prospect is an order that gets no slot now, but that pods called to the station could
+        complete. If the called pods serve no order with a slot, one of the prospects gets the slot
+        of such an order, which becomes a prospect in turn. If none can, the call is cancelled.
         """
         station, pods = call.station, np.array(call.pods)
         new = np.flatnonzero(self.prospect < 0)
