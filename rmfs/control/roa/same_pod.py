@@ -38,8 +38,8 @@ class SamePodParameters(Parameters):
     """Whether the bundles for a pod are sent one by one, possibly to several stations, instead of
     together."""
     first_come_first_served: bool = True
-    """Whether the batches after a batch have to wait if no station has room for it. This parameter
-    has no effect if `break_batches` is true."""
+    """Whether a batch for which no station has room holds up all batches that came after it. This
+    parameter has no effect if `break_batches` is true."""
     same_tier: bool = True
     """Whether only stations on the current tier of the pod are considered. As long as this tier has
     no station that is on, the bundles for the pod wait, without blocking other batches."""

@@ -155,7 +155,7 @@ def quarter_turns(before_rad: float, after_rad: float) -> int:
 
 
 def straight_way(layout: Layout, move: PlannedMove) -> list[int]:
-    """Return the waypoints of a move, which is straight, without the first one."""
+    """Return the waypoints of a straight move, except the first."""
     along = np.array([math.cos(move.heading_rad), math.sin(move.heading_rad)])
     here, way = move.from_waypoint, []
     while here != move.to_waypoint:

@@ -42,9 +42,10 @@ class PileOnControl(PickOrderAssignment[PileOnParameters]):
     called pods. Parts of the plan that have become invalid are dropped.
 
     A robot that is to bring a pod to a station fetches the nearest pod called for this station. If
-    the optimiser fails, its method `greedy` decides. PPS lexicographic with its defaults chooses
-    pods for replenishment. It also chooses a pod for a pick station if no pod is called for the
-    station and the pods under way do not bring all units needed there.
+    the optimiser fails, its method `greedy` decides. Pods for
+    replenishment are chosen by the rule `lexicographic` of PPS with its default parameters. This
+    rule also chooses a pod for a pick station if no pod is called for the station and the pods
+    under way do not bring all units needed there.
     """
 
     parameters_model = PileOnParameters

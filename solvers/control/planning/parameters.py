@@ -26,8 +26,9 @@ class PlanningParameters(SearchParameters):
     """Whether the lines of an order may be assigned separately, to different stations or at
     different times."""
     split_orders: Annotated[int, pydantic.Field(ge=0)] | None = None
-    """With `split`, maximum number of orders that are split at the same time; the space on the put
-    wall is then ignored. Default: as many as the put wall holds; without a put wall, any number."""
+    """With `split`, maximum number of orders that are split at the same time. By default, as many
+    as the put wall holds, or any number if there is none. If a number is given, it applies instead
+    of the space on the put wall."""
     visits: Annotated[int, pydantic.Field(ge=1, le=32)] = 6
     """Maximum number of new visits planned per station, in addition to the visits of pods under
     way."""
