@@ -102,7 +102,7 @@ def picture(path: Path) -> None:
 
 
 def say(text: str) -> None:
-    """Print a message on the progress."""
+    """Print a message about the progress of the demonstration."""
     print(text, flush=True)
 
 

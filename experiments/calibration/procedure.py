@@ -1,4 +1,4 @@
-r"""Find where a noisy, monotone response has a given mean: a root is estimated, then tested.
+r"""Find the level at which a noisy, monotone response has a given mean: estimate it, then test it.
 
 1. *Search*: retrospective approximation (H. Chen and B. W. Schmeiser 2001, Stochastic root finding
    via retrospective approximation, IIE Transactions 33(3), 259-275). The mean over a few seeds,

@@ -88,8 +88,8 @@ class Level:
         For each column, the values by which the design's `exclude` may refer to this level.
     of_grid
         Whether this is a level of a factor of the grid (the design's `factors`), not an entry of
-        the list of arms. In the arm's name, a level of the grid appears as `factor=level`, an entry
-        of the list only by its own name.
+        the list of arms. In the arm's name, a level of the grid appears as `factor=level`, whereas
+        an entry of the list appears as its name alone.
     """
 
     shown: dict[str, Any]

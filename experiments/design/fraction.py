@@ -3,8 +3,8 @@
 Command: `python -m rmfs.experiments.design.fraction`.
 
 If the factors are the rules of several decision problems, the grid of all combinations has
-thousands of arms. For a screening, far fewer arms suffice to estimate the main effects, if the
-levels of the factors are well balanced among these arms. The arms are chosen such that the
+thousands of arms. For screening, far fewer arms suffice to estimate the main effects, provided that
+the levels of the factors are well balanced among these arms. The arms are chosen such that the
 determinant of the information matrix of the main effects is large (D-optimality). The search starts
 from a random choice. In each step, it exchanges one chosen arm for another one, such that the
 determinant increases most; it ends when no exchange increases the determinant (Fedorov 1972). The

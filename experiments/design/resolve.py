@@ -184,7 +184,10 @@ def file_hash(path: Path) -> str:
 
 
 def file_name(path: Path) -> str:
-    """Return the name of an input file in plans: for shipped files, the same on every machine."""
+    """Return the name by which plans refer to an input file.
+
+    The name of a shipped file is the same on every machine; other files have absolute paths.
+    """
     if path.is_relative_to(instances.ROOT):
         return f"{_SHIPPED}{path.relative_to(instances.ROOT).as_posix()}"
     return str(path.absolute())

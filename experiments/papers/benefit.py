@@ -168,7 +168,10 @@ def publish_added(
     name: str,
     columns: Sequence[str] = (*RATES, *EFFORT),
 ) -> None:
-    """Publish the table of `of_optimiser` as `name`-optimiser if an arm has a start rule."""
+    """Publish the table that `of_optimiser` returns, under the name `{name}-optimiser`.
+
+    Nothing is published if no level of the column `controllers` is a start rule.
+    """
     if frame[CONTROLLERS].str.endswith(START).any():
         study.publish(of_optimiser(frame, groups, columns), f"{name}-optimiser", columns)
 

@@ -53,7 +53,7 @@ def beside(frame: pd.DataFrame) -> Table:
 
 
 def gain(frame: pd.DataFrame, columns: Sequence[str] = COLUMNS) -> Table:
-    """Return the gain in each measure by the fast lane, in percent, paired by seed."""
+    """Return the gain from the fast lane in each measure, in percent, paired by seed."""
     rows: dict[str, dict[tuple[str, str], float]] = {}
     for driving, runs in frame.groupby(DRIVING, sort=False):
         row: dict[tuple[str, str], float] = {}

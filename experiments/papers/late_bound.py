@@ -30,8 +30,8 @@ def fewest_late(
     """Return a lower bound on the number of late orders.
 
     A linear program maximises the number of orders on time; all other orders are late. It has one
-    constraint for each interval from an arrival to a due time. It considers the orders on time that
-    both arrive and are due in this interval: their total work is at most the length of the interval
+    constraint for each interval from an arrival to a due time: the total work of those orders on
+    time that both arrive and are due in the interval must not exceed the length of the interval
     times the number of stations.
 
     Parameters

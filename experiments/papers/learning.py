@@ -1,4 +1,4 @@
-"""Comparison of plain rules with look-ahead, trained linear rules, networks and optimisers.
+"""Look-ahead, trained linear rules, networks and optimisers compared with plain rules.
 
 A linear rule chooses the candidate with the greatest score, a weighted sum of features. In a
 network rule, a network trained by PPO (proximal policy optimisation) computes the scores.

@@ -5,9 +5,9 @@ with three to five robots or, with `--large`, at the large site (layout `large`)
 robots. Orders are not split; they come from a backlog or arrive over time. The start rule is the
 same controller with `method = "greedy"` and otherwise the same parameters: it also continues the
 previous plan, but does not search. With `--anticipation`, the comparison is not with the start
-rule: TA planning that considers future orders is compared with TA planning without this. The tables
-also show stored bundles and used space, because a controller that stores fewer bundles has more
-robots for picking, but only for a while.
+rule: TA planning that considers future orders is compared with TA planning that ignores them. The
+tables also show stored bundles and used space, because a controller that stores fewer bundles has
+more robots for picking, but only for a while.
 """
 
 from __future__ import annotations

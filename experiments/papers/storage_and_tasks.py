@@ -1,4 +1,4 @@
-"""PSA and TA models compared with the rules nearest (PSA) and balanced (TA).
+"""PSA and TA models compared with the PSA rule `nearest` and the TA rule `balanced`.
 
 Most arms replace only one of the two rules by a model. The literature finds that storage locations
 and tasks matter little for throughput (Merschformann, Lamballais, de Koster, Suhl 2019), but they

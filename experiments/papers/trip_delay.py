@@ -1,7 +1,7 @@
-"""A measure for studies of congestion: the share of trip time that is delay by other robots.
+"""A measure for studies of congestion: the share of trip time that is delay.
 
-Trips to stations are left out, as in the column `trip_delay_mean_s`: their time without other
-robots depends on the place in the queue.
+Trips to stations are left out, as in the column `trip_delay_mean_s`, because the time that they
+would take without other robots depends on the place in the queue.
 """
 
 from __future__ import annotations

@@ -69,8 +69,8 @@ def anova(
         Whether to separate interactions from the residual. Default True.
     block
         Column of the seeds. The variation between seeds gets its own row, as is appropriate with
-        common random numbers. None, or if runs of the same block have different seeds: the
-        variation is part of the residual. Default `replication`.
+        common random numbers. If `block` is None, or if runs of the same block have different
+        seeds, this variation is part of the residual instead. Default `replication`.
     confidence
         Confidence of the intervals of `partial_eta_sq`. Default 0.95.
     names

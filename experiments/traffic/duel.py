@@ -64,7 +64,7 @@ def chosen(text: str) -> Choice:
 
 
 def settings(text: str, seed: int, layout: Layout) -> PlannerSettings:
-    """Return the settings of a planner, given by name, on a layout."""
+    """Return the settings, for a layout, of the planner named by a text (see `chosen`)."""
     return planner_settings(chosen(text), seed, layout)
 
 

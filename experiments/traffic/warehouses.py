@@ -47,8 +47,8 @@ class Site:
     horizontal, vertical
         Numbers of aisles.
     picks, replenishments
-        Numbers of pick stations and of replenishment stations, each in the east, west, north and
-        south.
+        Numbers of pick stations and of replenishment stations on each side, in the order east,
+        west, north, south.
     """
 
     robots: int

@@ -200,7 +200,7 @@ def run(
 def kept_decisions(
     folder: Path, inputs: dict[str, str], seed: int, changes: Sequence[str] = ()
 ) -> DecisionRecorder:
-    """Return an observer that saves each question to an optimiser as a file in a folder.
+    """Return an observer that saves the questions to optimisers in a folder, one file each.
 
     Questions of a kind that the file format does not cover are left out.
     """

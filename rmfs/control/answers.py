@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 class Candidates:
     """A table of the C possible answers to a question: a row per answer, a column per attribute.
 
-    `candidates[row]` is the answer of that row, to be passed to `Decision.answer`.
+    The question is one that a program outside the simulation can answer in place of a controller
+    (`rmfs.control.questions`). `candidates[row]` is the answer of that row, to be passed to
+    `rmfs.simulation.decision.Decision.answer`.
 
     Parameters
     ----------

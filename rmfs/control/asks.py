@@ -147,7 +147,7 @@ class Ask(Generic[Q]):
 
 
 class Outcome(StrEnum):
-    """Whether and how a call of an optimiser ended."""
+    """Whether and how a call to an optimiser ended."""
 
     WAITING = "waiting"
     """No answer has arrived, so far or by the end of the run."""

@@ -91,9 +91,9 @@ class Controller(Generic[P]):
         Modules with the functions that answer its questions (`rmfs.control.asks`); required of
         controllers that ask optimisers.
     goes_on
-        Whether `answered`, after an interruption, continues where it stopped if it is called again
-        with the same call (see `Call.left`). Questions to a program outside the simulation cause
-        such interruptions. If PPS, PSA or repositioning is decided outside the simulation, this
+        Whether `answered`, if it is called again with the same call, continues where it was
+        interrupted (see `Call.left`). Questions to a program outside the simulation cause such
+        interruptions. If PPS, PSA or repositioning is decided outside the simulation, this
         must be true for a TA rule that asks optimisers.
     looks_ahead
         Whether it needs the attribute `lookahead`, with which it can try out decisions.
@@ -124,7 +124,7 @@ class Controller(Generic[P]):
         """Return the simulated time, in s, by which the controller must be asked again.
 
         If the time is inf, the controller is asked only after events. The simulation calls this
-        method each time it has asked the controller.
+        method each time after it has asked the controller.
         """
         return inf
 
@@ -136,9 +136,9 @@ class Controller(Generic[P]):
 
         This method is called when a question has been answered, even if there is no solution. If
         `goes_on` is true, it may be called again with the same call after an interruption. An
-        implementation adds to `call.stale` the number of decisions that are no longer valid. It
-        wraps decisions that do not come from this answer in `rmfs.control.asks.By`. The base class
-        yields no decisions.
+        implementation adds to `call.stale` the number of decisions that are no longer valid. If a
+        decision does not come from this answer, the implementation wraps the decision in
+        `rmfs.control.asks.By`. The base class yields no decisions.
         """
         return iter(())
 

@@ -59,8 +59,8 @@ class TriesOut:
     Attributes
     ----------
     base
-        The base rule. It makes the default decision. In a trial, which simulates the effects of one
-        decision, it makes all later decisions on the problem.
+        The base rule. It makes the default decision and, in the trials of decisions, all later
+        decisions on the problem.
     """
 
     looks_ahead: ClassVar[bool] = True
@@ -115,7 +115,7 @@ def question(
     decisions: Sequence[Any],
     parameters: RolloutParameters,
 ) -> Ask[Comparison]:
-    """Return a request to compare decisions by trials and to choose the best one.
+    """Return a question that asks which of several decisions does best in trials.
 
     The first of `decisions` must be the decision of the base rule.
     """

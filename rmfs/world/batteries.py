@@ -72,7 +72,10 @@ class Batteries:
         self.strandings: list[tuple[float, int]] = []
 
     def usable_j(self, robot: int) -> float:
-        """Return the energy in a battery above minimum level and reserve, in J; may be negative."""
+        """Return by how much a battery's energy exceeds minimum level plus reserve, in J.
+
+        The result may be negative.
+        """
         return self._levels.level_j(robot) - self.least_j - self.reserve_j
 
     def levels_j(self) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, eq=False)
 class ChargeTask(VisitTask):
-    """The task of a robot without a pod to go to a charger or swap station.
+    """The task of going to a charger or swap station, for a robot that carries no pod.
 
     Attributes
     ----------

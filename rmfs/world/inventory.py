@@ -125,7 +125,7 @@ class Inventory:
         return skus
 
     def stock(self, pod: int, sku: int, units: int) -> None:
-        """Put units on a pod without using promised space; for example, the initial stock."""
+        """Put units, such as the initial stock, on a pod without using promised space."""
         space = units * self._unit_space_list[sku]
         before = self._contained.item(sku, pod)
         if not before and units:

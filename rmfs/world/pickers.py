@@ -161,7 +161,7 @@ class Staff:
         picker.busy_until_s = now_s + seconds
 
     def bring(self, picker: Picker, now_s: float) -> None:
-        """Update the stored fatigue of a picker to the current time."""
+        """Set the stored fatigue of a picker to its current value."""
         picker.fatigue, picker.told_s = self.fatigue(picker, now_s), now_s
 
     def fatigue(self, picker: Picker, now_s: float) -> float:

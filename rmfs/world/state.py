@@ -48,8 +48,8 @@ class WorldState:
         Notifications of changed pick stations. A pick station counts as changed when it is switched
         on or off, when a robot reaches or leaves it, and when it gains or loses an order.
     work_news
-        Notifications of stations that gain open work or may have no open work left, by number in
-        the common numbering. Open work is work for which no pod is under way.
+        Notifications, by number in the common numbering, of stations that gain open work or may
+        have none left. Open work is work for which no pod is under way.
     work_stations
         The stations to which rules assign work: all pick and replenishment stations, in the common
         numbering (see `stations`).

@@ -133,8 +133,8 @@ class Storage:
     def departed(self, robot: Robot, rest: int) -> bool:
         """Release the places that a robot leaves or has left; return whether any were released.
 
-        Not released are `rest`, the place of the robot's task, and the place to which the robot has
-        been sent (even if no route there is planned yet).
+        Three waypoints are not released: `rest`; the place of the robot's task; and the place to
+        which the robot has been sent, even if no route there is planned yet.
 
         Parameters
         ----------

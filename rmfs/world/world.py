@@ -148,7 +148,7 @@ class World(OrderOperations):
         return bound
 
     def give_back(self, task: PickTask) -> int:
-        """Reopen the requests of a task whose orders have no slot yet; return their number."""
+        """Reopen those requests of a task that belong to orders without a slot; return how many."""
         picks = [pick for pick in task.picks if pick.line.order.station < 0]
         self._give_back(task, picks)
         return len(picks)

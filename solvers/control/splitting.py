@@ -1,9 +1,9 @@
 """Determines which orders may be split: as many as the put wall, or a given limit, allows.
 
-A split order needs slots of the wall: one for each of its totes except the last or, if the totes of
-an order share a slot, just one. The number of totes is known only when the last line has a station,
-so each line without a station counts as a separate tote. If no other limit is given, the wall
-therefore always has room for the totes of split orders, and never blocks a pick station.
+If the totes of an order share a slot of the wall, a split order needs one slot; otherwise, it needs
+a slot for each of its totes except the last. The number of totes is known only when the last line
+has a station, so each line without a station counts as a separate tote. If no other limit is given,
+the wall therefore always has room for the totes of split orders, and never blocks a pick station.
 
 If the number of split orders is limited, orders are ranked by a ratio: the largest number of lines
 of the order that the pods under way to a single station can serve, divided by the number of slots

@@ -1,4 +1,4 @@
-"""RPS stocking: chooses pods and stations for bundles so that most robot time is saved."""
+"""RPS stocking: chooses pods and stations for bundles to save as much robot time as possible."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ class StockingControl(ReplenishmentPodSelection[StockingParameters]):
             yield self._question()
 
     def answered(self, call: Call) -> Iterator[Told]:
-        """Apply the valid decisions of the solution or, if there is none, of the greedy rule."""
+        """Apply the valid decisions of the solution or, without a solution, of the greedy rule."""
         if call.solution is not None:
             yield from self._apply(call.solution, call.ask.memo, call)
             return

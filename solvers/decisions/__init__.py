@@ -1,4 +1,4 @@
-"""Decisions as files: questions to optimisers, saved, solved, checked and compared outside a run.
+"""Decisions as files: questions saved in runs, then solved, checked and compared without a run.
 
 `schema` defines the fields of questions and answers, `files` reads and writes them, `recording`
 saves them during a run, `checking` verifies answers without the models, `solving` solves them with

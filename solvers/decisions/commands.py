@@ -95,7 +95,7 @@ def check(
         Path, typer.Argument(metavar="SOLUTION", help="Solution file, from any source.")
     ],
 ) -> None:
-    """Check a solution independently and compute its value; the exit code is 2 if it is wrong."""
+    """Check a solution independently and compute its value; a wrong solution gives exit code 2."""
     from rmfs.solvers.decisions.checking import WrongError
     from rmfs.solvers.decisions.checking import check as checked
     from rmfs.solvers.decisions.files import read_solution

@@ -1,4 +1,4 @@
-"""The result of a solve, and its limits; all models use both.
+"""The result and the limits of a solve, in the form that all models use.
 
 A solve is limited in deterministic work, not in time, so the same input gives the same output
 however busy the machine is. There is also a wall-clock guard, but it can only raise an error.

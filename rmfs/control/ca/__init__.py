@@ -34,8 +34,8 @@ class ChargeAssignment(Controller[P]):
         """Yield decisions that send robots to energy stations or make them leave chargers."""
 
     def target_share(self) -> float:
-        """Return the level (share of capacity) up to which a robot sent by the simulation charges.
+        """Return the level (share of capacity) to which robots charge if the simulation sends them.
 
-        The simulation sends a robot to charge, independently of the rule, if its charge is low.
+        Independently of the rule, the simulation sends a robot to charge if its charge is low.
         """
         return 0.8

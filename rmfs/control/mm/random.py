@@ -67,7 +67,8 @@ class RandomExchange(MethodManagement[RandomParameters]):
     def check(cls, choices: Mapping[Problem, Choice], source: str) -> None:
         """Check that each alternative is compatible with the rules of the other problems.
 
-        These are the initial rules, or those that another alternative has installed.
+        The rules of the other problems are the initial ones, or those that another alternative
+        has installed.
 
         Raises
         ------

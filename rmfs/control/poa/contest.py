@@ -108,10 +108,11 @@ class Contest:
         return [pods[place] for place in nearest_first.tolist()], metres[nearest_first]
 
     def completed_by(self, pod: int) -> NDArray[np.bool_]:
-        """Return which orders a pod, at the station or on its way there, can complete, shape (N,).
+        """Return whether each order can be completed by a given pod, shape (N,).
 
-        A pod can complete an order if it has all units that the order still needs, in addition to
-        those that orders with a slot need, and if no unit of the order is bound to another pod.
+        The pod is at the station or on its way there. It can complete an order if it has all units
+        that the order still needs, in addition to those that orders with a slot need, and if no
+        unit of the order is bound to another pod.
         """
         spare = self.view.inventory.available[:, pod][self.sku]
         spare = spare - self.view.need[self.station.index][self.sku]
@@ -124,7 +125,7 @@ class Contest:
         return completes
 
     def completed_by_all(self) -> NDArray[np.bool_]:
-        """Return which orders the `inbound` pods can complete together, shape (N,).
+        """Return whether each order can be completed by all `inbound` pods together, shape (N,).
 
         The pods can complete an order if they have all units that the order still needs, in
         addition to those that `claimed` counts.

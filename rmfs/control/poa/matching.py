@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def matches(view: View, stations: list[PickStation]) -> NDArray[np.int32]:
-    """Return how many units of each backlog order the pods of each station can supply, (S, B).
+    """Return how many units the pods of each station can supply for each backlog order, (S, B).
 
     The pods of a station are those at the station and those on their way to it. Available units
     that the station's open orders still need are not counted.

@@ -38,7 +38,7 @@ class PodMatch(BestPair[PodMatchParameters]):
     parameters_model = PodMatchParameters
 
     def scores(self, stations: list[PickStation]) -> NDArray[np.int32]:
-        """Return how many units of each order the pods of each station can supply, shape (S, B).
+        """Return how many units the pods of each station can supply for each order, shape (S, B).
 
         With `late_first`, the scores of late orders are raised above those of all others.
         """

@@ -23,7 +23,7 @@ def first_row(
     tie_breaker: TieBreaker,
     draw: Callable[[int], int],
 ) -> int:
-    """Return the one of the given rows of the backlog that the tie-breaker prefers.
+    """Return the row that the tie-breaker prefers among the given rows of the backlog.
 
     If the tie-breaker is `due-time` and due times are equal, the order that arrived first wins.
 

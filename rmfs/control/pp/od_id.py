@@ -27,7 +27,7 @@ class OdIdParameters(RollingParameters):
 
 
 class OdId(PathPlanning[OdIdParameters]):
-    """OD&ID: plans robots with conflicting paths jointly, as a group, one move at a time.
+    """OD&ID: plans for robots with conflicting paths as a group, one move of one robot at a time.
 
     OD&ID stands for operator decomposition with independence detection.
     """

@@ -145,7 +145,7 @@ class Completeable(PodCriterion):
     """Whether queued orders count as well."""
 
     def score(self, candidates: PickCandidates, rng: np.random.Generator) -> Scores:
-        """Return the number of orders that each pod completes, serving all open requests."""
+        """Return the number of orders that each pod completes by serving all open requests."""
         done = candidates.completed()
         flags = done.flags if self.queued else done.flags[: done.assigned]
         scores: Scores = flags.sum(axis=0)

@@ -30,7 +30,7 @@ class Fixed(PodStorageAssignment[NoParameters]):
         self._distances = PlaceDistances(view, "time")
 
     def place(self, robot: Robot) -> int:
-        """Return the pod's own storage location if it is empty, and else the nearest empty one."""
+        """Return the pod's own storage location if it is empty, otherwise the nearest empty one."""
         storage = self.view.storage
         own = self._own[robot.pod]
         if storage.is_empty[storage.place_index[own]]:

@@ -92,9 +92,9 @@ class Ranking:
         return targets
 
     def seen(self, target: int) -> NDArray[np.bool_]:
-        """Return which of the L places a search from a target rank finds empty, shape (L,).
+        """Return whether each of the L places is found empty by a search, shape (L,).
 
-        The search begins with the target rank and goes outward: the next better rank, the next
+        The search begins with the rank `target` and goes outward: the next better rank, the next
         worse, and so on. It ends when at least `corridor` ranks have been searched and an empty
         place has been found. Ranks that do not exist, beyond the best or the worst, count as
         searched.

@@ -62,7 +62,7 @@ class ScheduleControl(ByLevel[ScheduleParameters]):
         return max(self._asked_s, 0.0) + self.parameters.period_s
 
     def decide(self) -> Iterator[Told]:
-        """Ask for a schedule if one is due, and carry out the due steps of the last one."""
+        """Ask for a new schedule if one is due; carry out the due steps of the current schedule."""
         batteries = self.view.batteries
         if batteries is None:
             return

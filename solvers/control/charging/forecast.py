@@ -25,11 +25,12 @@ class _Seen(NamedTuple):
 class Forecast:
     """Forecasts the number of robots needed for work from recent counts of robots in use.
 
-    Robots that rest, charge or are on their way to charge are not counted, and of the robots in the
-    queue of a pick or replenishment station, at most two are. If some stations with work have no
-    robot at the head of their queue, more robots are needed than are in use. The forecast therefore
-    multiplies each count by a ratio: the number of stations with work, divided by the number of
-    those that have a robot at the head of their queue, both summed over all recent counts.
+    Robots that rest, charge or are on their way to charge are not counted. Of the robots in the
+    queue of each pick or replenishment station, at most two are counted. If some stations with work
+    have no robot at the head of their queue, more robots are needed than are in use. The forecast
+    therefore multiplies each count by a ratio: the number of stations with work, divided by the
+    number of those that have a robot at the head of their queue, both summed over all recent
+    counts.
 
     Parameters
     ----------

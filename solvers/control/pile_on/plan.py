@@ -156,9 +156,10 @@ class Plan:
 
         Items that the pod at the head of the queue can serve come first, and may use the reserved
         slots (`kept_slots`). A called pod is fetched only once it can serve an item with a slot at
-        the station. If there is none, items that this pod can serve may use the reserved slots,
-        too. Items are dropped and counted as stale if they have left the backlog. Unless `later`,
-        they are also dropped if pods called or under way no longer have enough units for them.
+        the station. As long as there is no such item, items without a slot that this pod can serve
+        may use the reserved slots, too. Items are dropped and counted as stale if they have left
+        the backlog. Unless `later` is true, they are also dropped if pods called or under way no
+        longer have enough units for them.
         """
         self._forget_pods(station)
         waiting = self.items[station.index]

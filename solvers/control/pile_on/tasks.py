@@ -121,7 +121,7 @@ class PileOnTasks(JointAllocation[PileOnTasksParameters]):
         self._changed = True
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Record an event in `triggers`, after which the model may be asked.
+        """Record an event whose kind is in `triggers`; the model may then be asked.
 
         A new order, or one that has lost units, is recorded only if a robot is resting.
         """

@@ -143,7 +143,7 @@ class DispatchControl(Asking[DispatchParameters]):
         return Ask(solve, Question(data, self.parameters.method), sizes, memo)
 
     def carry_out(self, call: Call, consult: Consult) -> Iterator[TaskDecision | Prepare]:
-        """Let robots bring pods to stations; those without a task store their pod, or rest."""
+        """Let robots bring pods to stations; robots without a task store their pod, or rest."""
         assert call.solution is not None
         memo: Memo = call.ask.memo
         view = self.view

@@ -1,6 +1,6 @@
-"""The mathematical program that solves a recorded decision to optimality.
+"""Exact mathematical programs of questions: their optimal solutions are the best answers.
 
-Its columns have names, and its solutions are converted to answers to the decision's question.
+The columns of a program have names, and its solutions can be converted to answers.
 """
 
 from __future__ import annotations

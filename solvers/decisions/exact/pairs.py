@@ -1,4 +1,4 @@
-"""Exact programs of decisions that the optimisers solve as assignments, flows, or with Clarabel."""
+"""Exact programs of questions that optimisers solve as assignments or flows, or with Clarabel."""
 
 from __future__ import annotations
 

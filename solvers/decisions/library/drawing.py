@@ -2,10 +2,10 @@
 
 For each family, size of site, kind of demand and seed, a run is simulated with a set of controllers
 that asks questions of the family; if there are two such sets, the runs alternate between them. The
-simulated time is divided into thirds: early, middle, late. From each third, one question is drawn
-uniformly at random among the largest tenth of the answered ones (by number of array entries). Only
-large questions are used because many of the others concern only one robot or one slot. `derived`
-makes the questions of families for which no controller asks any.
+simulated time is divided into thirds: early, middle, late. For each third, the largest tenth of its
+answered questions (by number of array entries) is determined, and one of these questions is drawn
+uniformly at random. Only large questions are used because many of the others concern only one robot
+or one slot. `derived` makes the questions of families for which no controller asks any.
 """
 
 from __future__ import annotations

@@ -89,7 +89,8 @@ def solve_by_assignment(
     table
         Function that returns the cost table; the time it takes counts as building time.
     read
-        Function that converts the array of the columns assigned to the rows to the model's values.
+        Function that turns an assignment (an array with the column of each row) into the model's
+        values.
     objective
         Objective function of the model.
     solver

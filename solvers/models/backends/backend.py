@@ -47,8 +47,8 @@ class Formulation(Generic[V]):
     decode
         Function that turns column values into the model's values.
     objective, violations
-        Functions that return the objective of the model's values, and the constraints that they
-        violate.
+        Functions of the model's values: the first returns their objective, the second describes
+        the constraints that they violate.
     names
         Function that enters the name and meaning of each column in the `Names` passed to it.
         Default: enters nothing.

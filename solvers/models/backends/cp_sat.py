@@ -122,7 +122,7 @@ def run(solver: cp_model.CpSolver, model: cp_model.CpModel) -> CpSolverStatus:
     """Solve a model; Ctrl-C ends the search.
 
     Python handles signals only in the main thread, and not while the main thread is inside the
-    solver. If called from the main thread, this function therefore runs the search in another one.
+    solver. If called from the main thread, this function therefore searches in another thread.
 
     Parameters
     ----------

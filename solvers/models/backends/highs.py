@@ -3,9 +3,9 @@
 On one thread, HiGHS is deterministic. The limit of a mixed-integer program is a number of
 branch-and-bound nodes; as the work per node varies, `Outcome.work` counts simplex iterations. The
 bound that `solve` returns comes from floating-point LPs, so it is lowered by the relative tolerance
-`NUMERICAL_TOLERANCE`; that of a pure LP never exceeds the bound proven by the dual multipliers
-(`safe_bound`). If coefficients are huge, HiGHS may round integer columns wrongly, so integer
-programs with coefficients above `LARGEST` are refused.
+`NUMERICAL_TOLERANCE`. For a pure LP, `solve` returns the bound proven by the dual multipliers
+(`safe_bound`) if that is still lower. If coefficients are huge, HiGHS may round integer columns
+wrongly, so integer programs with coefficients above `LARGEST` are refused.
 """
 
 from __future__ import annotations

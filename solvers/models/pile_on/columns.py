@@ -2,9 +2,9 @@
 
 The columns have the same letters as in the module `program`. A pair has a column only if it is a
 candidate, and a line has a column z at a station only if the pods that may come there could cover
-the line. In `Variant.WHOLE`, the column y of an order also serves as the column z of each of its
-lines, so the code that adds rows is the same for all variants; y then exists only at stations where
-all lines of the order could be covered.
+the line. In `Variant.WHOLE`, an order has a column y only at stations where all its lines could be
+covered, and this column also serves as the column z of each of these lines. The code that adds rows
+is therefore the same for all variants.
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ For each station in turn, two steps alternate until no call is useful:
 
        K(p) = -complete * (orders that p would complete) + travel * (d_rp + d_ps)     (eq. 23)
 
-   where d_rp is the distance from the robot r nearest to the pod, and d_ps that from the pod to the
-   station.
+   where d_rp is the distance from the nearest robot r to the pod, and d_ps the distance from the
+   pod to the station.
 
 If no single pod completes an order (or eases a shortage), `SETS` sets of pods are sampled, each
 covering a random order. The best set is improved by `SEARCHES` local searches, each of which

@@ -34,7 +34,7 @@ def solve(
     data, limits, seed
         As for every method (see `Methods`).
     start
-        A decision to start from if it is better than that of pod match. Default: none.
+        A decision to start from if it is better than that of `greedy`. Default: none.
     pruning
         How many candidate pairs CP-SAT may use. Default: the defaults of `Pruning`.
     bound_steps
@@ -43,9 +43,9 @@ def solve(
 
     Returns
     -------
-    A feasible decision, never worse than that of pod match or the start, with a bound that is valid
+    A feasible decision, never worse than that of `greedy` or the start, with a bound that is valid
     for the full input. `work` is measured in deterministic seconds of CP-SAT, whose last run may
-    exceed the limit. `built` counts the effort of building the programs and of preparing pod match.
+    exceed the limit. `built` counts the effort of building the programs and of preparing `greedy`.
     Neither includes the steps for the bound.
     """
     began = time.perf_counter()

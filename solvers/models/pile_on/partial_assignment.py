@@ -249,11 +249,11 @@ class PartialAssignment:
         return Call(float(gain[best]), station, (int(pods[best]),)) if gain[best] > 0 else None
 
     def settle_prospects(self, call: Call) -> None:
-        """Add the orders without a slot that the called pods can serve as prospects.
+        """Make prospects of the orders without a slot that the called pods can serve.
 
         A prospect is an order that gets no slot now, but that pods called to the station could
-        complete. If the called pods serve no order with a slot, one of the prospects gets the slot
-        of such an order, which becomes a prospect in turn. If none can, the call is cancelled.
+        complete. If the called pods serve no order with a slot, one of the prospects takes the slot
+        of an order, which becomes a prospect in turn. If this is impossible, the call is cancelled.
         """
         station, pods = call.station, np.array(call.pods)
         new = np.flatnonzero(self.prospect < 0)

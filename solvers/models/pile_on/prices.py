@@ -24,7 +24,7 @@ the nearest free robot.
 
 Initially, the price of a line at a station is the lowest cost per line of the pods that hold its
 SKU: the cost of calling a pod, divided by the number of lines that the pod could cover. Subgradient
-steps improve the prices. Their length is that of Polyak (1969), with the objective of a known
+steps improve the prices. The step length is that of Polyak (1969), with the objective of a known
 decision as the target value.
 """
 

@@ -2,10 +2,10 @@
 
 Each step replaces, moves or adds a visit of a station, swaps visits of two stations, or
 redistributes the lines that two stations serve. For a new visit, a few pods are drawn from those
-that could serve something, and the best of them by a quick estimate is used. Slightly worse plans
-are accepted at first (threshold accepting, Dueck and Scheuer 1990). A step changes only what one or
-two stations serve, so its time does not depend on the number of stations. The code of the steps is
-compiled: `rmfs/traffic/src/visits`.
+that could serve something, and the pod that a quick estimate rates best is used. Slightly worse
+plans are accepted at first (threshold accepting, Dueck and Scheuer 1990). A step changes only what
+one or two stations serve, so its time does not depend on the number of stations. The code of the
+steps is compiled: `rmfs/traffic/src/visits`.
 """
 
 from __future__ import annotations

@@ -58,8 +58,8 @@ def visit_legs(
 
     Returns
     -------
-    The robot times; +inf if no pod can reach the station or leave it, respectively. `PickStations`
-    and `Refill` raise an error for such a station.
+    The robot times. The first is +inf if no pod can reach the station, the second if no pod can
+    leave it. `PickStations` and `Refill` raise an error for such a station.
 
     Raises
     ------

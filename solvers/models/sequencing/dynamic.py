@@ -54,8 +54,8 @@ def solve(
 
     Returns
     -------
-    An optimal plan. If the limit is reached, the result is the start or, without a start, has no
-    values and status LIMIT. The status is INFEASIBLE if there is no plan.
+    An optimal plan. If the limit is reached, the start is returned; without a start, the solution
+    has no values and the status LIMIT. The status is INFEASIBLE if no plan exists.
     """
     began = time.perf_counter()
     if not data.feasible:

@@ -19,7 +19,7 @@ _PORTIONS = 16
 def solve(
     data: Zones, limits: Limits = NO_LIMITS, *, seed: int = 0, start: ZonePlan | None = None
 ) -> Solution[ZonePlan]:
-    """Place the classes by descending visit rate, in portions, in the zones with fastest visits.
+    """Place classes, highest visit rate first, in portions in the zones with the fastest visits.
 
     Each portion goes to the zone with room in which a visit takes the least robot time. This time
     includes the delay that one more visit causes to itself and to other visits.

@@ -62,8 +62,8 @@ def short_ways(data: TaskSequence, keep: Routes, *, tasks: int, places: int) -> 
     the owner is among the owners nearest to the task, by travel time via the best place. For each
     such pair, there is one arc for each of the best places. In the same way, a task may come first
     for a robot without a pod if the task is among the nearest to the robot or the robot is among
-    the nearest to the task. A route may end at the places nearest to the station of its last task
-    or, without tasks, to the initial position of its robot.
+    the nearest to the task. A route may end at the places nearest to the station of its last task;
+    a route without tasks may end at those nearest to the initial position of its robot.
 
     Parameters
     ----------

@@ -38,8 +38,8 @@ SLACK_S = 1e-7
 class TaskSequence:
     """Robots, tasks and free places.
 
-    Times are rounded to milliseconds, and are at most `LONGEST_S`, or infinite where this is
-    stated. A drive with time +inf is not allowed.
+    Times are rounded to milliseconds, and finite times are at most `LONGEST_S`. Times of drives may
+    be +inf (the drive is then not allowed), and so may `latest_s`, `due_s` and `skip_s`.
 
     Parameters
     ----------
