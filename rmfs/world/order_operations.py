@@ -120,6 +120,7 @@ class OrderOperations(WorldState):
         order.station = station
         if isnan(order.assigned_s):
             order.assigned_s = self.now_s
+        order.slot_s = self.now_s
         order.slots_taken += 1
         target.orders[order.index] = order
         target.changed()
@@ -158,7 +159,7 @@ class OrderOperations(WorldState):
             part = Order(
                 order.index, order.created_s, order.due_s, (), 0, 0, station, now_s, whole=order
             )
-            part.priority, part.weight = order.priority, order.weight
+            part.priority, part.weight, part.slot_s = order.priority, order.weight, now_s
             order.parts.append(part)
             order.slots_taken += 1
             self.split_orders[order.index] = order

@@ -58,8 +58,14 @@ class Order:
         Number of requests not yet bound to a pod, and of units not yet picked, over all lines.
     station
         The pick station, or -1 while in the backlog.
+    assigned_s
+        Time of the assignment to a station; for a split order, the time at which its first lines
+        were assigned.
     queued_at
         The pick station in whose pool the order is, or -1.
+    slot_s
+        Time at which the order itself took a slot. It differs from `assigned_s` if other lines of
+        the order had been assigned before.
     whole
         The order of which this is a part; None if it is not a part.
     parts
@@ -89,6 +95,7 @@ class Order:
     completed_s: float = nan
     queued_at: int = -1
     queued_s: float = nan
+    slot_s: float = nan
     whole: Order | None = None
     parts: list[Order] = field(default_factory=list)
     slots_taken: int = 0

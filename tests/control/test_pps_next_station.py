@@ -35,6 +35,18 @@ class TestNextStation:
         scores = MostWork(metric="age").score(three.view, three.world.robots[0], [1, 2], three.rng)
         assert scores.tolist() == [10.0, 50.0]
 
+    def test_age_of_each_part_of_an_order(self, three) -> None:
+        """At 50 s: station 1 wants two units since 10 s; station 2, the rest, two since 40 s."""
+        order = three.order(s0=2, s1=2)
+        three.stock(0, s1=2)
+        three.world.now_s = 10.0
+        three.world.assign_lines(order, 1, [0])
+        three.world.now_s = 40.0
+        three.world.assign_lines(order, 2, [1])
+        three.world.now_s = 50.0
+        scores = MostWork(metric="age").score(three.view, three.world.robots[0], [1, 2], three.rng)
+        assert scores.tolist() == [40.0, 10.0]
+
     def test_lateness_takes_the_latest_requests_first(self, three) -> None:
         """Nine units for 6 requests due at 0 (per request 60 / 6) and 6 due at 90 (-30 / 6), at 60
         s: 6 x 10 - 3 x 5 = 45."""

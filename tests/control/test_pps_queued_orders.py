@@ -97,6 +97,20 @@ class TestQueuedOrders:
         scores = criterion.score(self.found(pooled, "assigned-and-queued"), pooled.rng)
         assert scores.tolist() == pytest.approx([100.0, 20.0, 10.0, 30.0])
 
+    def test_age_of_a_part_whose_order_is_queued(self, situation) -> None:
+        """At 100 s: the part has waited 90 s for one unit, its order in the pool 20 s for two."""
+        situation.stock(0, s0=1)
+        situation.stock(1, s1=2)
+        order, world = situation.order(s0=1, s1=2), situation.world
+        world.now_s = 10.0
+        world.assign_lines(order, 0, [0])
+        world.now_s = 80.0
+        world.queue_order(order, 0)
+        world.now_s = 100.0
+        criterion = PickWorkAmount(metric="age", time_cost=0.0, completable_boost=0.0)
+        scores = criterion.score(self.found(situation, "assigned-and-queued"), situation.rng)
+        assert scores.tolist() == pytest.approx([90.0, 0.2 * 20.0])
+
     def test_what_a_carried_pod_serves(self, pooled) -> None:
         """Robot 0 stands with its pod at another station, say; then at station 0 itself, where a
         pod is not used for queued orders."""

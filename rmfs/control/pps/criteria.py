@@ -201,8 +201,8 @@ class PickWorkAmount(PodCriterion):
 
     def _work(self, candidates: PickCandidates) -> Scores:
         done = candidates.completed()
-        value = {order.index: self._value(candidates, order) for order in done.orders}
-        worth = [value[order.index] * order.open_units for order in done.orders]
+        value = {order: self._value(candidates, order) for order in done.orders}
+        worth = [value[order] * order.open_units for order in done.orders]
         if self.metric == "picks":
             scores: Scores = candidates.servable_units()
         else:
@@ -213,7 +213,7 @@ class PickWorkAmount(PodCriterion):
         return scores
 
     def _queued_work(
-        self, candidates: PickCandidates, value: dict[int, float], worth: list[float]
+        self, candidates: PickCandidates, value: dict[Order, float], worth: list[float]
     ) -> Scores:
         """Return the value of queued orders' requests, with the boost but not the weight."""
         done = candidates.completed()
@@ -246,7 +246,7 @@ class WaveWork(PodCriterion):
         orders = candidates.pick_station.orders.values()
         coming = [order.due_s for order in orders if order.due_s >= candidates.view.now_s]
         last_s = min(coming, default=candidates.view.now_s) + self.wave_s
-        return _valued(candidates, {order.index: float(order.due_s <= last_s) for order in orders})
+        return _valued(candidates, {order: float(order.due_s <= last_s) for order in orders})
 
 
 class BundleWorkAmount(PodCriterion):
@@ -307,7 +307,7 @@ class BundleDemand(PodCriterion):
 
 
 def _valued(
-    candidates: PickCandidates, value: dict[int, float], queued: bool = False
+    candidates: PickCandidates, value: dict[Order, float], queued: bool = False
 ) -> NDArray[np.float64]:
     """Return the total value of the requests that each pod can serve, shape (C,).
 
@@ -321,11 +321,11 @@ def _valued(
         waiting = pool.lines.get(sku)
         if not waiting:
             continue
-        lines = sorted(waiting, key=lambda line: value[line.order.index], reverse=True)
+        lines = sorted(waiting, key=lambda line: value[line.order], reverse=True)
         before = int(need[sku]) if queued else 0
         for line in lines:
             taken = np.clip(candidates.have[row] - before, 0, line.open_units)
-            total += value[line.order.index] * taken
+            total += value[line.order] * taken
             before += line.open_units
     return total
 

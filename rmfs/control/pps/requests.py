@@ -11,15 +11,18 @@ RequestValue = Literal["picks", "age", "lateness"]
 
 
 def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool) -> float:
-    """Return the value of one open request of an order.
+    """Return the value of one open request of an order, or of a part of a split order.
 
     A request is one unit that the order needs; it is open until it is bound to a pod.
 
     Parameters
     ----------
+    order
+        The order or part to which the request belongs. Other parts of a split order do not matter.
     metric
-        `picks`: the value is 1. `age`: the seconds since the order was assigned (if it is only in
-        a station's pool: since it joined the pool), divided by the number of its open requests.
+        `picks`: the value is 1. `age`: the seconds since the order or part took its slot (if it is
+        only in a station's pool: since it joined the pool), divided by the number of its open
+        requests.
         `lateness`: the seconds since the order was due (negative if it is not due yet), divided by
         the number of its open requests; if late, also multiplied by the weight of the order's
         class.
@@ -29,7 +32,7 @@ def value_of(order: Order, now_s: float, metric: RequestValue, *, positive: bool
     if metric == "picks":
         return 1.0
     if metric == "age":
-        since_s = order.assigned_s if order.station >= 0 else order.queued_s
+        since_s = order.slot_s if order.station >= 0 else order.queued_s
         return (now_s - since_s) / order.open_units
     late_s = now_s - order.due_s
     if late_s > 0:
