@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,8 +59,9 @@ def solve(question: Comparison) -> Answer:
     kept. The trials end early if, in the futures tried so far, no other decision that is kept has a
     greater mean value than the base rule's decision. In the end, the best of the others is chosen
     if its mean advantage over the base rule's decision exceeds `certainty` standard errors;
-    otherwise, the base rule's decision is chosen. Source: Karnin, Koren and Somekh (2013), "Almost
-    optimal exploration in multi-armed bandits".
+    otherwise, the base rule's decision is chosen. If only one future was tried, the standard error
+    is unknown, and the base rule's decision is chosen unless `certainty` is 0. Source: Karnin,
+    Koren and Somekh (2013), "Almost optimal exploration in multi-armed bandits".
 
     Returns
     -------
@@ -85,16 +86,19 @@ def solve(question: Comparison) -> Answer:
     best = max(alive[1:], key=lambda row: _advantage(values, row)[0], default=0)
     if best:
         mean, error = _advantage(values, best)
-        if not mean > question.certainty * error:
+        if not mean > (question.certainty * error if question.certainty else 0.0):
             best = 0
     value = float(np.mean(values[best])) if values[best] else 0.0
     return Answer({"row": best}, -value, -inf, "compared", "rollout", work=float(spent))
 
 
 def _advantage(values: dict[int, list[float]], row: int) -> tuple[float, float]:
-    """Return mean and standard error of the advantage over the first decision."""
+    """Return mean and standard error of the advantage over the first decision.
+
+    With one value, the standard error is nan.
+    """
     gain = np.array(values[row]) - np.array(values[0][: len(values[row])])
     mean = float(gain.mean())
     if len(gain) < 2:
-        return mean, 0.0 if mean > 0 else inf
+        return mean, nan
     return mean, float(gain.std(ddof=1) / np.sqrt(len(gain)))

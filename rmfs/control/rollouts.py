@@ -37,7 +37,8 @@ class RolloutParameters(Parameters):
     candidates: AtLeastOne = 4
     """Maximum number of decisions that are compared, including the decision of the base rule."""
     samples: AtLeastOne = 4
-    """Maximum number of randomly drawn futures in which each decision is tried."""
+    """Maximum number of randomly drawn futures in which each decision is tried; at least 2, unless
+    `certainty` is 0."""
     horizon_s: Positive = 180.0
     """Duration of a trial in seconds of simulated time."""
     instants: AtLeastOne = 100_000
@@ -45,10 +46,21 @@ class RolloutParameters(Parameters):
     (times at which something happens) in total, no further future is tried."""
     certainty: Annotated[float, pydantic.Field(ge=0)] = 1.0
     """Required certainty: another decision replaces that of the base rule only if its mean
-    advantage in the trials, divided by the standard error of this mean, exceeds this number."""
+    advantage in the trials, divided by the standard error of this mean, exceeds this number. With
+    0, any positive mean is enough. Otherwise, at least two futures must have been tried, since the
+    standard error of a single value is unknown."""
     goal: Goal = Goal()
     """Weights of what happens in a trial: units picked, orders completed, units stored, seconds by
     which orders are overdue, and metres driven. They define the value of the trial."""
+
+    @pydantic.model_validator(mode="after")
+    def _certain_of_something(self) -> RolloutParameters:
+        if self.samples < 2 and self.certainty > 0:
+            raise ValueError(
+                "samples must be 2 or more, or certainty 0: the standard error of one sample is "
+                f"unknown; given: samples = {self.samples}, certainty = {self.certainty:g}"
+            )
+        return self
 
 
 class TriesOut:

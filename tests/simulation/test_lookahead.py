@@ -150,6 +150,11 @@ def test_a_run_with_look_ahead_repeats_and_can_be_copied(problem: str, pacing: s
             "instant",
             "over.0: Input should be",
         ),
+        (
+            {"controllers__poa": {"name": "rollout", "samples": 1}},
+            "instant",
+            "samples must be 2 or more, or certainty 0: .* given: samples = 1, certainty = 1",
+        ),
     ],
 )
 def test_what_cannot_be_looked_ahead_is_refused(
@@ -194,6 +199,14 @@ def test_the_best_is_found_and_the_bad_are_dropped() -> None:
 def test_the_base_rule_keeps_what_is_not_clearly_worse() -> None:
     assert best(Noisy([0.0, 0.1, 0.05], 5.0), certainty=3.0) == 0
     assert best(Noisy([1.0, 0.5, 0.0], 0.0)) == 0
+
+
+def test_one_future_is_enough_only_if_no_certainty_is_required() -> None:
+    """With one sample, the standard error is unknown, so nothing is certain."""
+    for certainty, chosen in ((1.0, 0), (1e-9, 0), (0.0, 1)):
+        assert best(Noisy([0.0, 5.0], 0.1), samples=1, certainty=certainty) == chosen
+        assert best(Noisy([0.0, 5.0], 0.1), instants=5, certainty=certainty) == chosen
+    assert best(Noisy([0.0, -5.0], 0.1), samples=1, certainty=0.0) == 0
 
 
 def test_a_budget_ends_the_rounds() -> None:

@@ -118,7 +118,7 @@ BY_OPTIMISERS: dict[str, tuple[dict[str, Any], tuple[str, ...]]] = {
     ),
     "rollout": (
         {
-            "controllers__ta": {"name": "rollout", "samples": 1, "horizon_s": 5.0},
+            "controllers__ta": {"name": "rollout", "samples": 1, "certainty": 0, "horizon_s": 5.0},
             "scenario__duration_s": 60,
         },
         ("pps", "psa"),
