@@ -47,8 +47,24 @@ def test_the_table_of_lines_is_the_file_with_what_became_of_it(run):
     assert (joined["sku_x"] == joined["file_sku"]).all()
     assert (joined["quantity"] == joined["units"]).all()
     assert (joined["customer"] == joined["file_customer"]).all()
-    picked = lines["picked_s"].notna()
-    assert picked.sum() == len(done.recorder.lines.columns()["order"]) > 10
+    ends_s = pd.Series(done.recorder.lines.columns()["end_s"])
+    assert lines["picked_s"].notna().sum() == (ends_s <= 1200.0).sum() > 10
+
+
+def test_a_line_that_is_being_picked_at_the_end_is_not_picked_yet(run):
+    folder, done = run
+    log = done.recorder.lines.columns()
+    begins_s, ends_s = log["time_s"][9], log["end_s"][9]
+    end_s = (begins_s + ends_s) / 2
+    short = rmfs.simulate(
+        "small", folder / "own.toml", "default", seed=1, set={"scenario.duration_s": end_s}
+    )
+    assert short.recorder.lines.columns()["end_s"][9] == ends_s > end_s
+    lines = short.table("order_lines")
+    assert lines["picked_s"].max() <= end_s
+    own = (lines["order"] == log["order"][9]) & (lines["sku"] == log["sku"][9])
+    assert own.sum() == 1
+    assert lines.loc[own, "picked_s"].isna().all()
 
 
 def test_lines_agree_with_the_tables_of_orders_and_skus(run):

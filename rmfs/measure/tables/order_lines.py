@@ -27,7 +27,8 @@ ORDER_LINES = (
         "picked_s",
         REAL,
         "s",
-        "Time at which the handling of the line's last unit ended; empty if not yet picked",
+        "Time at which the handling of the line's last unit ended; empty if it had not ended by "
+        "the end of the run",
     ),
     Column(
         "file_line", INTEGER, "", "Number of the line (CSV) or row (Parquet) in the file of orders"
@@ -101,7 +102,7 @@ def _counts(orders: pd.DataFrame, stream: OrderStream) -> NDArray[np.int64]:
 
 def _picked_s(logs: Logs, order: NDArray[np.int64], sku: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return when each line was finished, or nan; an order has a SKU only once."""
-    skus, done = len(logs.world.skus), logs.lines
+    skus, done = len(logs.world.skus), logs.lines[logs.lines["end_s"] <= logs.end_s]
     keys = done["order"].to_numpy(np.int64) * skus + done["sku"].to_numpy(np.int64)
     by_key = np.argsort(keys, kind="stable")
     found = np.searchsorted(keys[by_key], order * skus + sku)
