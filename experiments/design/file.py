@@ -56,7 +56,11 @@ class Strict(Model):
 
 
 class Best(Strict):
-    """Selection of the arms of a stage: those with the best means in the previous stage."""
+    """Selection of the arms of a stage: those with the best means in the previous stage.
+
+    The means cover the seeds stated for the previous stage. An arm without a value for each of
+    these seeds, for example because a run failed, is left out.
+    """
 
     best: int = Field(ge=1, description="number of arms")
     by: Measure = Field(description="column of the footprint whose means are compared")

@@ -7,7 +7,8 @@ results arrive: an interrupted experiment needs the same runs as an uninterrupte
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from statistics import mean
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
@@ -90,7 +91,7 @@ def schedule(
     before: list[int] = []
     for stage in plan.design.all_stages():
         if stage.arms is not None:
-            present = _best(stage.arms, present, before, known)
+            present = _best(stage.arms, stage.name, present, before, known, remarks)
             remarks.append(f"stage {stage.name}: {len(present)} arms go on: {' | '.join(present)}")
         before = plan.design.seeds_of(stage)
         wanted, over = _of_stage(stage, present, before, known, remarks)
@@ -203,13 +204,18 @@ def _select(
     return wanted, True
 
 
-def _best(rule: Best, arms: list[str], seeds: list[int], known: _Known) -> list[str]:
-    """Return the arms with the best means over the previous stage's seeds, in design order."""
-    means: dict[str, Any] = {
-        arm: pd.Series(known.values(arm, seeds, rule.by), dtype=float).mean() for arm in arms
-    }
-    order = pd.Series(means).sort_values(
-        ascending=rule.better() == "min", kind="stable", na_position="last"
-    )
-    chosen = set(order.dropna().index[: rule.best])
+def _best(
+    rule: Best, name: str, arms: list[str], seeds: list[int], known: _Known, remarks: list[str]
+) -> list[str]:
+    """Return the arms with the best means over the previous stage's seeds, in design order.
+
+    All means cover the same seeds: an arm that lacks a value for one of them is left out.
+    """
+    values = {arm: known.values(arm, seeds, rule.by) for arm in arms}
+    if lacking := [arm for arm in arms if len(values[arm]) < len(seeds)]:
+        told = f"stage {name}: left out, as not all runs have a value of {rule.by}"
+        remarks.append(f"{told}: {' | '.join(lacking)}")
+    means = pd.Series({arm: mean(values[arm]) for arm in arms if arm not in lacking}, dtype=float)
+    order = means.sort_values(ascending=rule.better() == "min", kind="stable")
+    chosen = set(order.index[: rule.best])
     return [arm for arm in arms if arm in chosen]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import nan
+
 import pandas as pd
 import pytest
 from stand_in import Inline, footprint
@@ -103,6 +105,32 @@ def test_failed_runs_do_not_hold_up_a_stage(design, tmp_path):
         done = drive(plan, store, Inline(do=work))
         assert done.failed
         assert (experiments.load(store.folder)["replication"] == 100).sum() == 1
+
+
+@pytest.mark.parametrize("lost", ["failed", "without a value"])
+def test_arms_with_lost_runs_do_not_go_on(design, lost):
+    """The arm that looks best lost its worse seed; the next best has both."""
+    stages = [
+        {"name": "screening", "seeds": [1, 2]},
+        {"name": "final", "seeds": [100], "arms": {"best": 2, "by": "units_per_h"}},
+    ]
+    plan = made(design, seeds=None, stages=stages)
+    first, second, third, *others = (arm.name for arm in plan.arms)
+    known = {first: [900.0, nan], second: [800.0, 400.0], third: [500.0, 500.0]}
+    known |= {arm: [100.0, 100.0] for arm in others}
+    frame = pd.DataFrame(
+        [(arm, seed, both[seed - 1]) for arm, both in known.items() for seed in (1, 2)],
+        columns=["arm", "replication", "units_per_h"],
+    )
+    failed = []
+    if lost == "failed":
+        frame, failed = frame.dropna(), [(first, 2)]
+    now = schedule(plan, frame, failed)
+    assert [wanted.arm for wanted in now.runs if wanted.stage == "final"] == [second, third]
+    assert now.remarks == [
+        f"stage final: left out, as not all runs have a value of units_per_h: {first}",
+        f"stage final: 2 arms go on: {second} | {third}",
+    ]
 
 
 def test_replications_of_stages_are_not_replaced(design):
