@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import rmfs
+from rmfs.control.ca.levels import ByLevel
 from rmfs.control.ca.opportunity import Opportunity
 from rmfs.control.decisions import Charge, Unplug
 from rmfs.control.problems import Problem
@@ -121,6 +122,29 @@ def test_places_are_handed_over():
     kept = simulate(**few)
     handed = simulate(**few, **{"controllers.ca.hand_over_share": 0.05})
     assert handed.table("stations")["visits"].iloc[-1] > kept.table("stations")["visits"].iloc[-1]
+
+
+def test_places_are_handed_over_to_robots_in_the_queue_only(monkeypatch):
+    """A robot on its way does not count: the place would be empty until it arrives."""
+    waiting, hand_over = [], ByLevel._hand_over
+
+    def watched(self, shares, gap):
+        for one in hand_over(self, shares, gap):
+            station = self.view.all_stations[one.robot.station]
+            queue = self.view.layout.stations[station.index].queue
+            there = [r for r in station.tasks if self.view.travel.robot_waypoint(r) in queue]
+            waiting.append(min(shares[r] for r in there) + gap < shares[one.robot.index])
+            yield one
+
+    monkeypatch.setattr(ByLevel, "_hand_over", watched)
+    simulate(
+        **{
+            "layout.other_stations.charger.north": 1,
+            "controllers.ca": {"below_share": 0.55, "hand_over_share": 0.05},
+        }
+    )
+    assert len(waiting) > 5
+    assert all(waiting)
 
 
 def test_copies_and_saved_runs_go_on_alike(tmp_path):

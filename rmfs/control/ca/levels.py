@@ -31,8 +31,8 @@ class PlaceParameters(Parameters):
     there), `nearest`, or `soonest` (least total charging time of the robots at the place or on
     their way there)."""
     hand_over_share: Level | None = None
-    """A charging robot gives up its place if its level exceeds that of a robot waiting for the
-    place by more than this share of the capacity and suffices for any task. Default: never."""
+    """A charging robot gives up its place if its level exceeds that of a robot waiting in the queue
+    by more than this share of the capacity and suffices for any task. Default: never."""
 
 
 class LevelParameters(PlaceParameters):
@@ -101,11 +101,16 @@ class ByLevel(ChargeAssignment[P]):
             yield Charge(robot, station, until)
 
     def _hand_over(self, shares: list[float], gap: float) -> Iterator[Unplug]:
-        """Make a robot leave its charger if a robot with a much lower level waits for it."""
+        """Make a robot leave its charger if a robot with a much lower level queues for it."""
+        at = self.view.travel.robot_waypoint
         for station in self.view.chargers:
             here = station.robot
-            waiting = [shares[robot] for robot in station.tasks if robot != here]
-            if here not in station.tasks or not waiting:
+            if here not in station.tasks:
+                continue
+            queue = self.view.layout.stations[station.index].queue
+            others = [robot for robot in station.tasks if robot != here]
+            waiting = [shares[robot] for robot in others if at(robot) in queue]
+            if not waiting:
                 continue
             enough = max(min(waiting) + gap, self.enough_share())
             if shares[here] > enough:
