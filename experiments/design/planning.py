@@ -232,6 +232,7 @@ def plan_of(
     measures = design_file.own_measures(table, folder)
     design = config.validate(DesignFile, table, source)
     made, problems = arms(design, folder)
+    problems += [] if problems else _too_many_chosen(design, len(made))
     made = [arm for arm in made if arm.name not in without]
     if any(problem.startswith("base: ") for problem in problems):
         return Plan(design, table, made, {}, problems, source)
@@ -315,6 +316,21 @@ def _named(names: list[str]) -> str:
         return f"arm {names[0]}"
     shown = " | ".join(names[:3])
     return f"arms {shown}" + (f" and {len(names) - 3} more" if len(names) > 3 else "")
+
+
+def _too_many_chosen(design: DesignFile, arms: int) -> list[str]:
+    """Return an error for each stage that is to choose more arms than the stage before has."""
+    problems = []
+    for stage in design.stages:
+        if stage.arms is None:
+            continue
+        if stage.arms.best > arms:
+            problems.append(
+                f"stage {stage.name}: arms.best = {stage.arms.best}: must be from 1 to {arms}, the "
+                "number of arms in the stage before"
+            )
+        arms = min(stage.arms.best, arms)
+    return problems
 
 
 def _twins(made: list[Arm]) -> list[str]:

@@ -34,9 +34,10 @@ class Answer:
     ----------
     solution
         Values by name; None if there is no solution or none was found in time.
-    objective, bound
-        Cost of the solution, and proven lower bound on the cost of any solution; each is nan or
-        infinite if it is unknown.
+    objective
+        Cost of the solution; inf if it is unknown. Without a solution, inf or nan.
+    bound
+        Proven lower bound on the cost of any solution; nan or -inf if it is unknown.
     status
         Final status, as the solver names it.
     backend
@@ -61,8 +62,8 @@ class Answer:
     TypeError
         If the solution is neither a mapping nor None, or a cost, time or size is not a number.
     ValueError
-        If `work`, `built`, `wall_s` or `build_s` is negative or not finite, or the bound exceeds
-        the objective of a solution by more than `BOUND_TOLERANCE`.
+        If `work`, `built`, `wall_s` or `build_s` is negative or not finite, if the objective of a
+        solution is nan, or if the bound exceeds it by more than `BOUND_TOLERANCE`.
     """
 
     solution: Mapping[str, Plain] | None
@@ -85,6 +86,8 @@ class Answer:
             value = getattr(self, name)
             if not (isfinite(value) and value >= 0.0):
                 raise ValueError(f"{name} must be a finite number, 0 or more; it is {value}")
+        if self.solution is not None and isnan(self.objective):
+            raise ValueError("objective must be a number, or inf if it is unknown; it is nan")
         slack = BOUND_TOLERANCE * max(1.0, abs(self.objective))
         if self.solution is not None and self.bound - self.objective > slack:
             raise ValueError(

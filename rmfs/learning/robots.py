@@ -13,6 +13,7 @@ from rmfs.control.features import LIMIT
 from rmfs.control.legality import why_not
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
+from rmfs.errors import InputError
 from rmfs.learning.episode import Episodes
 from rmfs.world.stations import PickStation
 
@@ -152,8 +153,19 @@ class RobotsEnv(ParallelEnv[str, Any, np.int64]):
     def step(
         self, actions: dict[str, Any]
     ) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Any]]:
-        """Carry out the actions of the robots, and simulate up to the next turn of TA."""
-        run, agents = self.run, self.agents
+        """Carry out the actions of the robots, and simulate up to the next turn of TA.
+
+        Robots without an action wait.
+
+        Raises
+        ------
+        InputError
+            If an action is given for an unknown agent.
+        """
+        run, agents, known = self.run, self.agents, frozenset(self.possible_agents)
+        if unknown := [str(agent) for agent in actions if agent not in known]:
+            valid = f"{self.possible_agents[0]} to {self.possible_agents[-1]}"
+            raise InputError(f"actions: no agent {', '.join(unknown)} (agents: {valid})")
         before_s = run.now_s
         for number, agent in enumerate(self.possible_agents):
             if agent in actions:

@@ -93,7 +93,14 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: Any = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start a run in every environment; return the observations and `info`."""
+        """Start a run in every environment; return the observations and `info`.
+
+        Raises
+        ------
+        InputError
+            If the environment has been closed.
+        """
+        self._require_open()
         seeds: list[int | None]
         if seed is None or isinstance(seed, (int, np.integer)):
             seeds = [None if seed is None else int(seed) + i for i in range(self.num_envs)]
@@ -107,7 +114,14 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     def step(
         self, actions: Any
     ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
-        """Carry out an action in every environment; where an episode has ended, start the next."""
+        """Carry out an action in every environment; where an episode has ended, start the next.
+
+        Raises
+        ------
+        InputError
+            If the environment has been closed.
+        """
+        self._require_open()
         board = self._board.arrays
         board["action"][:] = actions
         for pipe in self._pipes:
@@ -123,7 +137,14 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
         )
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Return whether each action is possible in each environment, shape (N, actions)."""
+        """Return whether each action is possible in each environment, shape (N, actions).
+
+        Raises
+        ------
+        InputError
+            If the environment has been closed.
+        """
+        self._require_open()
         return self._board.arrays["action_mask"].copy()
 
     @property
@@ -145,6 +166,10 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
                 process.terminate()
 
     # --- inside ---------------------------------------------------------------------------------
+
+    def _require_open(self) -> None:
+        if self.closed:
+            raise InputError("the environment has been closed; create a new DecisionVectorEnv")
 
     def _answers(self) -> dict[int, Any]:
         """Wait for all processes; return their messages, which complement the shared memory."""

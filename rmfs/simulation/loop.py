@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from functools import partial
+from math import inf
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from rmfs.errors import InputError
 from rmfs.simulation.agenda import LAST, us_at
 from rmfs.simulation.collection import fewer_collections
 from rmfs.simulation.decision import Decision
@@ -149,13 +151,25 @@ class Loop:
     def run_until(self, time_s: float) -> Decision | None:
         """Simulate up to a time in s, including everything at that time, but not beyond the end.
 
+        Parameters
+        ----------
+        time_s
+            The time; inf for the end of the run.
+
         Returns
         -------
         Decision or None
             The first decision that must be made outside the simulation, at which the simulation
             stops; None if no such decision comes up by that time.
+
+        Raises
+        ------
+        InputError
+            If the time is nan or -inf.
         """
-        return self._go_on(min(us_at(time_s), self._end_us))
+        if not time_s > -inf:
+            raise InputError(f"time_s {time_s}: must be a time in s, or inf for the end of the run")
+        return self._go_on(us_at(min(time_s, self.end_s)))
 
     def step(self) -> Decision | None:
         """Simulate up to the next decision that is made outside the simulation.

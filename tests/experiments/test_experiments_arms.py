@@ -137,6 +137,20 @@ def test_short_names_tell_factors_apart():
         ({"seeded": ["seed"]}, "seeded: seed: must begin with"),
         ({"arms_file": "nothing.csv"}, "nothing.csv: no such file"),
         ({"exclude": [{"layout.robots": [8, 16]}]}, "no arms are left"),
+        (
+            {"stages": [{"name": "a"}, {"name": "b", "arms": {"best": 7, "by": "units_per_h"}}]},
+            "stage b: arms.best = 7: must be from 1 to 4, the number of arms in the stage before",
+        ),
+        (
+            {
+                "stages": [
+                    {"name": "a"},
+                    {"name": "b", "arms": {"best": 2, "by": "units_per_h"}},
+                    {"name": "c", "arms": {"best": 3, "by": "units_per_h"}},
+                ]
+            },
+            "stage c: arms.best = 3: must be from 1 to 2, the number of arms in the stage before",
+        ),
     ],
 )
 def test_problems_of_arms_are_told(design, changes, told):

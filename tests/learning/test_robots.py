@@ -5,8 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 from pettingzoo.test import parallel_api_test, parallel_seed_test
 
+from rmfs.errors import InputError
 from rmfs.learning import RobotsEnv
 
 
@@ -37,3 +39,12 @@ def test_robots_that_take_what_there_is_get_orders_done() -> None:
     assert all(truncations.values())
     assert total == footprint["units_picked"] > 20
     assert elapsed_s == 400
+
+
+def test_actions_of_unknown_agents_are_refused() -> None:
+    env = made()
+    env.reset(seed=1)
+    told = r"no agent robot_99, picker \(agents: robot_0 to robot_\d+\)"
+    with pytest.raises(InputError, match=told):
+        env.step({"robot_0": 0, "robot_99": 0, "picker": 1})
+    env.step({"robot_0": 0})

@@ -107,6 +107,20 @@ def test_what_is_wrong_is_told_at_once() -> None:
         DecisionVectorEnv(2, workers=3, **GIVEN)
 
 
+def test_a_closed_environment_says_so() -> None:
+    several = DecisionVectorEnv(2, workers=2, **GIVEN)
+    several.reset(seed=1)
+    several.close()
+    for call in (
+        lambda: several.step(np.zeros(2, int)),
+        lambda: several.reset(seed=1),
+        several.action_masks,
+    ):
+        with pytest.raises(InputError, match=r"closed; create a new DecisionVectorEnv"):
+            call()
+    several.close()
+
+
 class Broken(Reward):
     """Fails as soon as a unit is picked."""
 
@@ -120,3 +134,5 @@ def test_an_error_in_a_process_comes_through() -> None:
     with pytest.raises(RuntimeError, match="no such sum"):
         for _ in range(100):
             *_, info = several.step(np.asarray(info["action_mask"]).argmax(axis=1))
+    with pytest.raises(InputError, match="closed"):
+        several.reset(seed=1)

@@ -32,6 +32,7 @@ def run(pacing: str, **parameters: object) -> HandMade:
         ({"work": nan}, "work must be a finite number, 0 or more; it is nan"),
         ({"work": -1.0}, "work must be a finite number"),
         ({"built": inf}, "built must be a finite number"),
+        ({"objective": nan}, "objective must be a number, or inf if it is unknown; it is nan"),
         ({"objective": 1.0, "bound": 2.0}, "bound 2.0 exceeds the objective 1.0"),
         ({"solution": [1, 2]}, "solution must map names to values, or be None; it is a list"),
     ],
@@ -55,6 +56,7 @@ def test_a_gap_is_held_against_the_scale() -> None:
     assert isnan(Answer({}, 0.0, -20.0, "feasible", "cp_sat").gap)
     assert Answer({}, 0.0, 0.0, "optimal", "cp_sat").gap == 0.0
     assert isnan(Answer(None, inf, -20.0, "limit", "cp_sat").gap_abs)
+    assert isnan(Answer({}, inf, -20.0, "feasible", "cp_sat").gap)
 
 
 def test_what_is_no_answer_is_refused() -> None:

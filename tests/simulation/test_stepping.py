@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import random
 from functools import cache
+from math import inf, nan
 from typing import Any
 
 import pytest
@@ -176,6 +177,15 @@ def test_how_often_a_run_stops_changes_nothing() -> None:
         assert run.now_s == min(time_s, run.end_s)
     assert run.ended
     assert told(run) == told(inside)
+
+
+def test_the_time_to_simulate_to_is_a_number() -> None:
+    run = simulation()
+    for wrong in (nan, -inf):
+        with pytest.raises(InputError, match=f"time_s {wrong}: must be a time in s, or inf for"):
+            run.run_until(wrong)
+    assert run.run_until(inf) is None
+    assert run.ended
 
 
 def test_a_question_stands_until_it_is_answered() -> None:
