@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import nullcontext
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Literal
@@ -19,7 +20,7 @@ from rmfs.scenario.loading import load, load_with_notes
 from rmfs.scenario.parameters import Scenario, SkuFile, StreamDemand, StreamReplenishment
 from rmfs.scenario.pick_times import UnitTimes
 from rmfs.scenario.skus import SkuSet, write_sku_set
-from rmfs.scenario.sources import bundle_stream, order_stream, sku_set
+from rmfs.scenario.sources import sku_set
 from rmfs.scenario.streams import digest
 from rmfs.scenario.toml import to_toml
 from rmfs.scenario.writing import write_scenario
@@ -64,19 +65,23 @@ def show(scenario: Name, settings: Settings = None) -> None:
 @app.command()
 def check(scenario: Name, settings: Settings = None) -> None:
     """Check a scenario and its files; print the error or, if there is none, a summary."""
+    from rmfs.cli.terminal import progress
+
     config = _loaded(scenario, settings)
     skus = sku_set(config.skus)
     anywhere = Site(1, 1, capacity=math.inf, largest_pod=math.inf)
-    order_intake(config, skus, anywhere, seed=0)
-    bundle_intake(config, skus, anywhere, seed=0)
+    streams = (config.demand, config.replenishment)
+    files = [s.file.name for s in streams if isinstance(s, StreamDemand | StreamReplenishment)]
+    told = f"reading {' and '.join(files)}"
+    with progress(told, wordy=False) if files else nullcontext():
+        orders = order_intake(config, skus, anywhere, seed=0).stream
+        bundles = bundle_intake(config, skus, anywhere, seed=0).stream
     if config.pickers is not None:
         UnitTimes(config.pickers.unit_time)
     typer.echo(f"{scenario}: ok, {summary(skus)}")
-    if isinstance(config.demand, StreamDemand):
-        orders = order_stream(config, skus)
+    if orders is not None:
         typer.echo(f"{len(orders)} orders, digest {digest(orders, skus)}")
-    if isinstance(config.replenishment, StreamReplenishment):
-        bundles = bundle_stream(config, skus, math.inf)
+    if bundles is not None:
         typer.echo(f"{len(bundles)} bundles, digest {digest(bundles, skus)}")
 
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from rmfs.config import validate
 from rmfs.errors import InputError
-from rmfs.scenario import Scenario, bundle_intake, load, order_intake, sku_set
+from rmfs.scenario import Scenario, bundle_intake, load, order_intake, sku_set, sources
 from rmfs.scenario.commands import app
 from rmfs.scenario.loading import load_with_notes
 
@@ -82,6 +82,16 @@ def test_sku_sets_from_the_command_line(tmp_path: Path):
         run("sku-set", "default", "--out", out)
     with pytest.raises(InputError, match=r"none\.json: no such file"):
         run("sku-set", tmp_path / "none.json")
+
+
+def test_check_reads_a_file_of_orders_once(tmp_path: Path, monkeypatch):
+    read, readings = sources.read_orders, []
+    monkeypatch.setattr(sources, "read_orders", lambda *a: readings.append(a[0]) or read(*a))
+    path = tmp_path / "orders.csv"
+    path.write_text("time,order,sku,quantity\n0,a,1,1\n9,b,2,1\n")
+    stream = f"scenario.demand={{mode='stream', file='{path}'}}"
+    assert "2 orders, digest" in run("check", "small", "--set", stream)
+    assert readings == [path]
 
 
 def test_export_from_the_command_line(tmp_path: Path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
 import resource
 from pathlib import Path
@@ -23,6 +24,7 @@ from rmfs.scenario import (
     write_stream,
 )
 from rmfs.scenario.streams import digest, read_bundles, read_orders
+from rmfs.scenario.streams.csv_file import _fields
 
 ORDERS = """time,order,sku,quantity,due
 0,A,0,1,1800
@@ -60,6 +62,21 @@ def test_ways_to_write_the_same(tmp_path: Path, few_skus: SkuSet, text: str):
     stream = read_orders(written(tmp_path, text), few_skus)
     known = read_orders(written(tmp_path, ORDERS, "known.csv"), few_skus)
     assert digest(stream, few_skus) == digest(known, few_skus)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["1,2,,x", " 1 ,\t2, ", "", " ", ",", "ä,'b',c;d", '1,"a, b",2', '"a""b",1', '1,a"b,2'],
+)
+def test_lines_with_and_without_quotes_are_read_as_csv(line: str):
+    expected = [field.strip() for field in next(csv.reader([line], strict=True), [])]
+    for end in ("\n", "\r\n", ""):
+        assert _fields((line + end).encode(), 2) == expected
+
+
+def test_a_line_break_within_a_line_is_refused():
+    with pytest.raises(csv.Error, match="new-line character"):
+        _fields(b"1,a\rb,2\n", 2)
 
 
 def test_columns_in_any_order_and_without_due(tmp_path: Path, few_skus: SkuSet):

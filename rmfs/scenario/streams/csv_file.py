@@ -65,4 +65,9 @@ def _fields(raw: bytes, number: int) -> list[str]:
         text = raw.decode("utf-8-sig" if number == 1 else "utf-8")
     except UnicodeDecodeError:
         raise _UnreadableError("is not UTF-8 text") from None
-    return [field.strip() for field in next(csv.reader([text.strip("\r\n")], strict=True), [])]
+    text = text.strip("\r\n")
+    if '"' in text or "\r" in text or not text:
+        found = next(csv.reader([text], strict=True), [])
+    else:
+        found = text.split(",")  # the same, but faster
+    return [field.strip() for field in found]
