@@ -1,29 +1,12 @@
-"""The footprint columns and output files of RAWSim-O, and their counterparts in rmfs.
+"""The footprint columns of RAWSim-O, and their counterparts in rmfs (`Mapped`).
 
-In the counterparts, text in backticks names a column of rmfs: a column of the footprint or, in the
-form `table.column`, of another table. The rest is prose. Columns that RAWSim-O computes incorrectly
-are computed correctly in rmfs. For columns without a counterpart, the reason is given.
+Columns that RAWSim-O computes incorrectly are computed correctly in rmfs. For columns without a
+counterpart, the reason is given.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-
-class Mapped(NamedTuple):
-    """A footprint column or an output file of RAWSim-O, with its counterpart in rmfs.
-
-    Attributes
-    ----------
-    theirs
-        Name of the column or file in RAWSim-O.
-    ours
-        The counterpart in rmfs, or the reason why there is none.
-    """
-
-    theirs: str
-    ours: str
-
+from rmfs.rawsimo.mapped import Mapped
 
 _SPREAD = ("Avg", "Med", "LQ", "UQ")
 _NAMES = {"Avg": "mean", "Med": "median", "LQ": "lower_quartile", "UQ": "upper_quartile"}
@@ -379,104 +362,3 @@ COLUMNS: tuple[Mapped, ...] = (
     *_free(),
 )
 """RAWSim-O's footprint columns, in the order of its file, which has no header."""
-
-FILES: tuple[Mapped, ...] = (
-    Mapped("instance.txt", "run.json: layout"),
-    Mapped("setting.txt", "run.json: scenario"),
-    Mapped("controller.txt", "run.json: controllers"),
-    Mapped("footprint.csv", "footprint.csv with a header, footprint.parquet"),
-    Mapped("statistics.txt", "report.html (rmfs report); tables robots, pods and stations"),
-    Mapped(
-        "stationstatistics.csv", "table stations; for the distribution of visit times, table visits"
-    ),
-    Mapped("itemdescriptionstatistics.csv", "table skus (`skus.popularity`, `skus.lines_picked`)"),
-    Mapped("itemprogression.csv", "table picks, with order and SKU"),
-    Mapped("bundleprogression.csv", "table bundles"),
-    Mapped("orderprogression.csv", "table orders"),
-    Mapped("bundleplacementprogression.csv", "`bundles.created_s`"),
-    Mapped("orderplacementprogression.csv", "`orders.created_s`"),
-    Mapped(
-        "collisionprogression.csv",
-        "none: rmfs run --check proves that there are no collisions, or else counts them in "
-        "`collisions`",
-    ),
-    Mapped("tripscompleted.csv", "table trips, with distance and `trips.station`"),
-    Mapped("traveleddistanceprogression.csv", "`series.distance_m`"),
-    Mapped(
-        "inventorylevel.csv",
-        "`series.inventory_share`; SKUs in stock and inversions are not recorded",
-    ),
-    Mapped(
-        "performance.csv",
-        "`peak_rss_mb`, `wall_s`, `decisions.wall_s`; memory over time is not recorded",
-    ),
-    Mapped(
-        "bundleordersituations.csv",
-        "`series.backlog_orders`, `series.backlog_bundles`; ages follow from `orders.created_s` "
-        "and `orders.assigned_s` (RAWSim-O mixes relative and absolute times)",
-    ),
-    Mapped(
-        "stationprogression.csv",
-        "tables picks, bundles and visits, grouped by station and time; for totals, table series",
-    ),
-    Mapped(
-        "botinfoprogression.csv", "`series.robots_queueing`, `series.robots_task_pick` and so on"
-    ),
-    Mapped("wellsortedness.csv", "none: rmfs does not measure how well pods are sorted"),
-    Mapped(
-        "connectionstatistics.csv", "table connections; for the traffic on each edge, table edges"
-    ),
-    Mapped(
-        "pathfinding.csv",
-        "`planning_wall_s` and `plans`, for the whole run; if searches take simulated time, table "
-        "plans lists them",
-    ),
-    Mapped(
-        "locationspolled.heat",
-        "table heat, with exact counts by task (such as `heat.pick_visits`) instead of samples",
-    ),
-    Mapped("trips.heat", "table connections, grouped by waypoint and `connections.to_kind`"),
-    Mapped(
-        "storagelocationinfopolled.heat",
-        "none: scores of pods are not recorded; table pods has other figures of each pod",
-    ),
-    Mapped("output.log", "the error stream of the command"),
-    Mapped("tags.csv", "none, as for Tag"),
-    Mapped("exception.txt", "the error stream and the exit code"),
-    Mapped(
-        "debug.xinst",
-        "none: the file shows overlapping robots; in rmfs, robots never overlap, and the checker "
-        "of the trace would report it",
-    ),
-)
-"""RAWSim-O's output files."""
-
-
-def markdown() -> str:
-    """Return the section `Measures` of the guide for users of RAWSim-O, in Markdown."""
-    lines = [
-        "## Measures",
-        "",
-        "Two tables show where rmfs reports the figures of RAWSim-O: the first lists the columns",
-        "of RAWSim-O's footprint, the second the files that RAWSim-O writes. A name in backticks",
-        "is a column of `footprint` or, in the form `table.column`, of another table; the",
-        "[data dictionary](data-dictionary.md) explains all columns. RAWSim-O uses elements of the",
-        "sorted list as quartiles; rmfs interpolates between elements. This part is",
-        "generated by `python -m tests.tools.pages`.",
-        "",
-        "### Footprint",
-        "",
-        "| # | RAWSim-O | rmfs |",
-        "|---:|---|---|",
-        *(f"| {number} | {one.theirs} | {one.ours} |" for number, one in enumerate(COLUMNS, 1)),
-        "",
-        "### Files",
-        "",
-        "| RAWSim-O | rmfs |",
-        "|---|---|",
-        *(f"| {one.theirs} | {one.ours} |" for one in FILES),
-        "",
-        "RAWSim-O also declares two files of an asynchronous order manager, but never writes them.",
-        "",
-    ]
-    return "\n".join(lines)

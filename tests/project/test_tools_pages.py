@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from rmfs.measure.dictionary import TABLES, markdown
-from rmfs.rawsimo.footprint import COLUMNS, FILES
+from rmfs.rawsimo.footprint import COLUMNS
+from rmfs.rawsimo.output_files import FILES
 from tests.tools.fields import sections
 from tests.tools.pages import (
     DICTIONARY,

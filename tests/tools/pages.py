@@ -9,7 +9,7 @@ from pathlib import Path
 from rmfs.errors import InputError
 from rmfs.files import write_text
 from rmfs.measure import dictionary
-from rmfs.rawsimo import footprint as rawsimo
+from rmfs.rawsimo import measures as rawsimo
 from tests.tools.fields import sections
 
 DICTIONARY = "data-dictionary.md"
