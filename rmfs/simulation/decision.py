@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rmfs.control.candidates import Candidates
     from rmfs.control.questions import Question
     from rmfs.control.view import View
+    from rmfs.simulation.advice import Advice
     from rmfs.simulation.controller_set import ControllerSet
     from rmfs.simulation.deciding import Deciding
     from rmfs.simulation.phase import DecisionPhase
@@ -39,6 +40,11 @@ class Asking(Protocol):
     @property
     def phase(self) -> DecisionPhase:
         """The decision phase in which the question is pending."""
+        ...
+
+    @property
+    def advice(self) -> Advice:
+        """What the installed rules would decide."""
         ...
 
     @property
@@ -196,10 +202,10 @@ class Decision:
         simulation = self._simulation
         outside, rule = simulation.phase.outside, simulation.controller_set[self.problem]
         if self.kind != "turn":
-            found = simulation.phase.advice_to(self._question)
+            found = simulation.advice.on(self._question)
             return None if isinstance(found, int) and found < 0 else found
         if outside.advisor is None:
-            outside.advisor = simulation.phase.advice(self.problem)
+            outside.advisor = simulation.advice.in_turn(self.problem)
         decision, _ = told_by(next(outside.advisor, None), None)
         if isinstance(decision, Ask):
             raise NotImplementedError(f"{self.problem} {type(rule).__name__} asks an optimiser")

@@ -10,6 +10,7 @@ from rmfs.control.view import View
 from rmfs.errors import InputError
 from rmfs.observer import Observed, Observer
 from rmfs.scenario import bundles_to_cover, initial_stock, sku_set
+from rmfs.simulation.advice import Advice
 from rmfs.simulation.agenda import Agenda
 from rmfs.simulation.alarms import Alarms
 from rmfs.simulation.applying import Applying
@@ -155,6 +156,7 @@ class Kernel(Loop):
         decided_outside = problems_outside(outside, controllers.choices)
         alarms = Alarms(agenda, installed, due.want, decided_outside)
         self.deciding = Deciding(world, events, installed, alarms, controllers.choices)
+        self.advice = Advice(world, installed, self.deciding)
         self.phase = DecisionPhase(
             controllers.choices,
             Outside(decided_outside),

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from rmfs.control.view import View
+    from rmfs.simulation.advice import Advice
     from rmfs.simulation.agenda import Agenda
     from rmfs.simulation.controller_set import ControllerSet
     from rmfs.simulation.deciding import Deciding
@@ -69,6 +70,7 @@ class Loop:
     phase: DecisionPhase
     controller_set: ControllerSet
     deciding: Deciding
+    advice: Advice
     optimisers: OptimiserGateway
     warmup_s: float
     end_s: float

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rmfs.control import decisions as say
 from rmfs.control import errands
-from rmfs.control.asks import Outcome, told_by
+from rmfs.control.asks import Outcome
 from rmfs.control.problems import Problem
 from rmfs.control.questions import Question
 from rmfs.simulation import steps
@@ -16,7 +16,7 @@ from rmfs.simulation.outside import ASKED_BY_TA, Awaits, Outside
 from rmfs.simulation.rule_state import RuleState
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Callable, Mapping
 
     from rmfs.control.asks import Call
     from rmfs.control.base import Controller
@@ -372,33 +372,6 @@ class DecisionPhase:
             outside.decided += 1
         outside.doing = None
         outside.begin_attempt()
-
-    def advice(self, problem: Problem) -> Iterator[Any]:
-        """Return the decisions that a problem's installed rule would make now; none is applied."""
-        rule = self._controllers[problem]
-        inside = PhaseConsult(self._world, self._controllers, self._deciding)
-        decisions: Iterable[Any] = rule.decide(inside) if problem is Problem.TA else rule.decide()
-        return iter(decisions)
-
-    def advice_to(self, question: Question) -> Any:
-        """Return the answer that the installed rule would give to a question asked by TA."""
-        rule = self._controllers[question.problem]
-        robot = self._world.robots[question.robot]
-        found = self._say(rule, robot, question)
-        return told_by(found, None)[0]
-
-    def _say(self, rule: Any, robot: Robot, question: Question) -> Any:
-        match question.kind:
-            case "pick pod":
-                return rule.pick_pod(robot, self._world.pick_stations[question.stations[0]])
-            case "replenishment pod":
-                station = self._world.stations[question.stations[0]]
-                return rule.replenishment_pod(robot, station)
-            case "next station":
-                return rule.next_station(robot, question.stations)
-            case "place":
-                return rule.place(robot)
-        return rule.move(robot)
 
     def end_turn(self, problem: Problem) -> None:
         """End a turn of decisions made outside the simulation; the phase can then continue."""
