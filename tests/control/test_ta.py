@@ -27,6 +27,18 @@ class TestNumbers:
         assert split(5, 1, 0) == (5, 0)
         assert split(5, 0, 0) == (0, 0)
 
+    def test_shares_that_are_whole_numbers_stay_as_they_are(self) -> None:
+        """Thirty robots by 1 : 2 are 10 and 20, also with weights 0.1 and 0.2."""
+        assert split(30, 0.1, 0.2) == (10, 20)
+        for robots in range(0, 200, 10):
+            for tenths in range(11):
+                first = robots * tenths // 10
+                assert split(robots, tenths / 10, 1 - tenths / 10) == (first, robots - first)
+
+    def test_one_of_three_stations_with_work(self) -> None:
+        """Weights 2 and 1, but only one of three replenishment stations has work: 6 : 1."""
+        assert split(35, 2.0, 1 / 3) == (30, 5)
+
     def test_stations_are_served_in_turn_up_to_the_limit(self) -> None:
         """Seven robots for three stations with a limit of two: one is left."""
         goals = dict.fromkeys((4, 2, 3), 0)

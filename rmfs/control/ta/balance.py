@@ -22,7 +22,8 @@ def split(robots: int, first: float, second: float) -> tuple[int, int]:
     total = first + second
     if total <= 0:
         return 0, 0
-    a, b = int(robots * first / total), int(robots * second / total)
+    # the tolerance is for weights such as 0.1, which binary numbers only approximate
+    a, b = int(robots * first / total + 1e-9), int(robots * second / total + 1e-9)
     rest = robots - a - b
     if second <= 0 or (first > 0 and a <= b):
         return a + rest, b
