@@ -13,6 +13,7 @@ from rmfs.control.trackers.congestion import DOUBT, KEPT, Congestion
 from rmfs.control.trackers.regions import REGION_M, Density, Regions
 from rmfs.errors import InputError
 from rmfs.layout import load
+from rmfs.layout.model import Layout
 from rmfs.measure.dictionary import reproducible
 
 
@@ -66,12 +67,12 @@ class TestDensity:
 class Counted:
     """A situation in which traffic has counted what the test says.
 
-    Eight storage locations at x = 0 to 7 m; regions are 6 m wide, so that 6 and 7 m lie in the
-    second.
+    By default, eight storage locations at x = 0 to 7 m; regions are 6 m wide, so that 6 and 7 m
+    lie in the second.
     """
 
-    def __init__(self) -> None:
-        self.situation = Situation(small_layout(places=8, pods=4))
+    def __init__(self, layout: Layout | None = None) -> None:
+        self.situation = Situation(layout or small_layout(places=8, pods=4))
         waypoints = self.situation.view.layout.waypoints
         self.visits, self.waiting_s = np.zeros(waypoints, np.int64), np.zeros(waypoints)
         self.situation.traffic.heat = lambda: {
@@ -146,6 +147,29 @@ class TestCongestion:
         robot.waypoint = 7 if counted.situation.traffic.robot_waypoint(0) != 7 else 0
         counted.wait(10.0)
         assert tracker.delay_s.flat[tracker.regions.of[2]] > calm > 0.0
+
+    @pytest.mark.parametrize(
+        ("start", "goal", "expected"),
+        [
+            (0, 23, [[1.0, 0.5, 0.5, 0.5], [0.5, 0.5, 0.5, 1.0]]),
+            (19, 21, [[0.5, 0.5, 0.5, 1.0], [1.0, 0.5, 0.5, 0.5]]),
+            (0, 13, [[1.0, 1.0, 1.0, 0.0], [0.0, 0.0, 0.0, 0.0]]),
+            (0, 21, [[1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]),
+            (7, 8, [[0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0]]),
+        ],
+    )
+    def test_a_robot_counts_once_in_each_region_of_a_route(self, start, goal, expected) -> None:
+        """Half a robot on each of two routes: both ways around, along x, along y, in one region.
+
+        Regions are 6 m wide. Storage locations 0 to 19 are at x = 0 to 19 m and y = 0, pick
+        stations 21 and 23 at x = 0 and 20 m and y = 10 m.
+        """
+        situation = Counted(small_layout(places=20, robots=1, pick_stations=3)).situation
+        robot = situation.world.robots[0]
+        situation.traffic.robot_waypoint = lambda _: start
+        robot.waypoint = goal
+        tracker = situation.view.trackers.get(Congestion, "forecast")
+        assert tracker._robots_through()[0].tolist() == expected
 
     def test_from_a_table(self, tmp_path) -> None:
         counted = Counted()

@@ -162,13 +162,15 @@ class Congestion(Tracker):
             if here == there:
                 continue
             tier, row, column = regions.tier[here], regions.row[here], regions.column[here]
-            rows = slice(*_between(row, regions.row[there]))
-            columns = slice(*_between(column, regions.column[there]))
-            # half a robot on each of the two ways around the rectangle
+            last_row, last_column = regions.row[there], regions.column[there]
+            rows, columns = slice(*_between(row, last_row)), slice(*_between(column, last_column))
+            # half a robot on each of the two routes; a corner is on two legs but counts once
             through[tier, row, columns] += 0.5
-            through[tier, regions.row[there], columns] += 0.5
+            through[tier, rows, last_column] += 0.5
+            through[tier, row, last_column] -= 0.5
             through[tier, rows, column] += 0.5
-            through[tier, rows, regions.column[there]] += 0.5
+            through[tier, last_row, columns] += 0.5
+            through[tier, last_row, column] -= 0.5
         return through
 
 
