@@ -141,6 +141,13 @@ class Observer:
         Such an order is in the station's pool: it has no slot yet.
         """
 
+    def pool_changed(self, station: int) -> None:
+        """Report that other pods than before may be useful for the pool of a pick station.
+
+        The station has a free slot again, or only some of the open units of an order in the pool
+        were bound to a pod.
+        """
+
     def picks_changed(self, time_s: float, robot: int) -> None:
         """Report that requests were bound to the pod of a robot's pick task, or released from it.
 

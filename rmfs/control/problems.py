@@ -165,3 +165,7 @@ class Trigger(IntEnum):
     ORDER_CUT = 17
     """Units that are not in stock were cut from an order of the backlog, which stock can now serve
     [Order]."""
+    POOL_CHANGED = 18
+    """Other pods than before may be useful for the pool of a pick station: the station has a free
+    slot again, or only some of the open units of an order in the pool were bound to a pod
+    [station]."""

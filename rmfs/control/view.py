@@ -175,8 +175,9 @@ class View:
     def work_version(self, station: int) -> tuple[int, ...]:
         """Return the version of a station's work.
 
-        The version changes when work is added or a pod becomes available. If no pod was found for a
-        station, another search is useless until the version has changed.
+        The version changes when work is added, when a pod becomes available, and when other pods
+        than before may be useful for the station's pool. If no pod was found for a station, another
+        search is useless until the version has changed.
         """
         return self.storage.version, *self.all_stations[station].work_version
 

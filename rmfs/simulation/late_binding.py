@@ -142,9 +142,14 @@ class LateBinding(Observer):
         if mode == "assigned":
             return
         whole = mode == "assigned-and-completable"
-        extend = self._world.extend_queued
-        bound = [extend(task, order, whole=whole, late_bound=late_bound) for order in orders]
-        self._tell(task, sum(bound))
+        bound, partly = 0, False
+        for order in orders:
+            units = self._world.extend_queued(task, order, whole=whole, late_bound=late_bound)
+            bound += units
+            partly |= units > 0 and order.open_units > 0
+        self._tell(task, bound)
+        if partly:
+            self._events.pool_changed(task.station)
 
     def _tell(self, task: PickTask, bound: int) -> None:
         """Notify of requests bound to the pod of a task, if there are any."""

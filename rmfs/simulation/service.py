@@ -198,6 +198,8 @@ class PickService:
         if self.outlet is not None:
             self.outlet.released(order, last=complete is not None, by_hand=by_hand)
         self._events.slot_freed(order)
+        if self._station.queued and self._station.free_slots == 1:
+            self._events.pool_changed(self._station.index)
 
 
 class ReplenishmentService:

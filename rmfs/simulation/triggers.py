@@ -41,6 +41,10 @@ class Triggers(Observer):
         """Signal that an order joined a station's pool; pods may be fetched for it in advance."""
         self._signal(Trigger.ORDER_QUEUED, order)
 
+    def pool_changed(self, station: int) -> None:
+        """Signal that there may be other pods to fetch for the orders in a station's pool."""
+        self._signal(Trigger.POOL_CHANGED, station)
+
     def unit_picked(
         self,
         time_s: float,

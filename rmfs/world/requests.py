@@ -40,8 +40,10 @@ class OpenRequests:
     units
         Open units in total.
     version
-        Increases whenever requests are added. A rule that found no pod for the requests need not
-        search again until the version has increased or a pod has become available.
+        Increases whenever requests are added, and whenever only some of the open requests of an
+        order in the pool are bound to a pod, since another pod may be able to serve the rest. A
+        rule that found no pod for the requests need not search again until the version has
+        increased or a pod has become available.
     """
 
     def __init__(self, need: NDArray[np.int32], news: News, station: int) -> None:

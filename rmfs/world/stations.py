@@ -160,7 +160,11 @@ class PickStation(Station[PickTask]):
 
     @property
     def work_version(self) -> tuple[int, ...]:
-        """Version that changes when requests are added or an order in the pool can get a slot."""
+        """Version that changes when other pods than before may be useful.
+
+        This is so when requests are added, when an order in the pool can get a slot, and when only
+        some of the open requests of an order in the pool are bound to a pod.
+        """
         if not self.queued:
             return (self.requests.version,)
         return self.requests.version, self.queued_requests.version, self.free_slots > 0

@@ -145,6 +145,8 @@ class World(OrderOperations):
                 self.orders.changed(line)
                 task.picks.extend([Pick(line, late_bound)] * count)
                 bound += count
+        if bound and order.open_units:
+            pool.version += 1
         return bound
 
     def give_back(self, task: PickTask) -> int:

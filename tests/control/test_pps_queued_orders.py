@@ -131,6 +131,21 @@ class TestQueuedOrders:
         with pytest.raises(ValueError, match="reserve must include the requests of consider"):
             RandomPod.parameters_model(reserve="assigned")
 
+    def test_a_station_is_searched_again_if_an_order_is_bound_in_part(self, pooled) -> None:
+        """Pod 2 takes one of the two units of order 1: then pods with one unit complete it, too.
+
+        Pod 3 takes all of order 2, after which no more pods than before are useful.
+        """
+        world, view = pooled.world, pooled.view
+        first, second = world.pick_stations[0].queued.values()
+        before = view.work_version(0)
+        task = world.start_pick(world.robots[0], 3, 0)
+        assert world.extend_queued(task, second, whole=True) == 2
+        assert view.work_version(0) == before
+        task = world.start_pick(world.robots[1], 2, 0)
+        assert world.extend_queued(task, first, whole=False) == 1
+        assert view.work_version(0) != before
+
     def test_binding_leaves_the_counts_in_order(self, pooled) -> None:
         """Pod 3 takes order 1 whole; order 2 lacks a unit of SKU 1, and gets one of SKU 2 if it
         need not be whole."""

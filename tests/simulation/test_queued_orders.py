@@ -125,6 +125,46 @@ def test_an_order_that_is_queued_late_is_bound_to_a_pod_on_its_way() -> None:
     assert [entry[2:] for entry in diary.of("unit")] == [(0, 0, False), (1, 1, True)]
 
 
+def two_robots(slots: int, **pps) -> HandMade:
+    """Order 0 wants SKU 0. Pod 3 has two units of SKU 0, pod 0 one of SKU 1."""
+    made = HandMade(
+        {"robots": 2, "slots": slots},
+        {"duration_s": 200.0},
+        poa={"name": f"{HERE}:PoolOnly"},
+        pps={"name": "lexicographic", **pps},
+        ta={"name": "balanced", "period_s": 0.0, "replenishment_weight": 0.0},
+    )
+    made.stock(3, s0=2)
+    made.stock(0, s1=1)
+    made.order(s0=1)
+    return made
+
+
+def fetches(diary) -> list[float]:
+    """When robots started to fetch pods for the station."""
+    return [entry[0] for entry in diary.of("pick")]
+
+
+def test_a_pod_is_fetched_as_soon_as_a_slot_is_free_for_a_queued_order() -> None:
+    """One slot: the pod for order 1 is fetched when order 0 is complete, though nobody assigns."""
+    made = two_robots(slots=1)
+    made.order(at_s=1.0, s1=1)
+    diary = made.run()
+    ((complete_s, *_),) = diary.of("complete")
+    assert fetches(diary)[:2] == [0.0, complete_s]
+
+
+def test_a_pod_is_fetched_as_soon_as_it_completes_what_is_left_of_a_queued_order() -> None:
+    """Order 1 wants SKUs 0 and 1, which no pod has together, and queues while pod 3 is fetched.
+
+    When pod 3 is lifted, after 5 s, the unit of SKU 0 is bound to it; pod 0 completes the rest.
+    """
+    made = two_robots(slots=2, reserve="assigned-and-queued")
+    made.order(at_s=1.0, s0=1, s1=1)
+    diary = made.run()
+    assert fetches(diary)[:2] == [0.0, 5.0]
+
+
 def test_queued_requests_are_returned_when_poa_is_exchanged() -> None:
     """At 1 s, while the pod is being fetched, another rule follows that knows no pools."""
     made = two_orders("Pool")

@@ -48,7 +48,13 @@ class Consult(Protocol):
 
 
 WORK = frozenset(
-    {Trigger.ORDER_ASSIGNED, Trigger.ORDER_QUEUED, Trigger.BUNDLE_ASSIGNED, Trigger.POD_AT_HAND}
+    {
+        Trigger.ORDER_ASSIGNED,
+        Trigger.ORDER_QUEUED,
+        Trigger.POOL_CHANGED,
+        Trigger.BUNDLE_ASSIGNED,
+        Trigger.POD_AT_HAND,
+    }
 )
 """Events after which there may be work for robots at rest."""
 
