@@ -93,7 +93,7 @@ class StockingParameters(SearchParameters):
     pods_per_bundle: Count = 8
     """Maximum number of pods that are considered for each bundle, the best first."""
     stations_per_pod: Count = 2
-    """Maximum number of stations that are considered for each pod, the nearest first."""
+    """Maximum number of stations with room that are considered for each pod, the nearest first."""
 
 
 class StockingControl(ReplenishmentPodSelection[StockingParameters]):

@@ -187,6 +187,20 @@ def test_bundles_go_together_and_the_greedy_rule_stands_in() -> None:
         assert {d.station for d in found if isinstance(d, SendBundle)} == {1}
 
 
+def test_a_bundle_goes_to_a_station_with_room_even_if_others_are_nearer() -> None:
+    """Two of three replenishment stations are considered for each pod; the nearest two are full."""
+    situation = Situation(small_layout(pods=2, replenishment_stations=3, station_capacity=4.0))
+    for pod, station in ((0, 1), (0, 2)):
+        situation.waiting_bundle(pod, station)
+    bundle = situation.bundle(1)
+    control = situation.make(StockingControl, leave_s=500.0)
+    (question,) = list(control.decide())
+    call = Call(0, Problem.RPS, control, question, 0, "")
+    call.answer = question.solve(question.question)
+    found = [told_by(said, call)[0] for said in control.answered(call)]
+    assert found == [PromiseBundle(bundle, 1), ReleasePod(1), SendBundle(bundle, 3)]
+
+
 def test_a_bundle_with_a_pod_by_then_is_stale() -> None:
     situation = Situation(small_layout(pods=2))
     bundle = situation.bundle(1)

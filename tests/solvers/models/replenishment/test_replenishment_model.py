@@ -139,6 +139,38 @@ def test_pruning_keeps_solutions_valid_and_loses_little() -> None:
         assert best.objective - 1e-6 <= near.objective <= 0.75 * best.objective
 
 
+def test_only_stations_with_room_are_kept() -> None:
+    """Pod 0 may take bundle 0 (2 units of space), pod 1 also bundle 1 (1 unit of space).
+
+    Station 0, the nearest, is full, and station 1 has room for bundle 1 only: pod 0 goes to station
+    2, pod 1 to station 1.
+    """
+    data = Replenishment(
+        worth_s=[[90.0, 90.0], [-inf, 50.0]],
+        leave_s=[20.0, 20.0],
+        space=[2.0, 1.0],
+        pod_space=[2.0, 3.0],
+        trip_s=[[10.0, 20.0, 30.0], [10.0, 20.0, 30.0]],
+        station_space=[0.5, 1.5, 9.0],
+    )
+    pruned = best_pods(data, pods=2, stations=1)
+    assert pruned.trip_s.tolist() == [[inf, inf, 30.0], [inf, 20.0, inf]]
+    assert best_pods(data, pods=2, stations=2).trip_s.tolist()[1] == [inf, 20.0, 30.0]
+
+
+def test_pods_are_rated_by_the_trip_to_a_station_with_room() -> None:
+    """Pod 0 is near the full station, pod 1 near the other."""
+    data = Replenishment(
+        worth_s=[[90.0, 90.0]],
+        leave_s=[20.0],
+        space=[1.0],
+        pod_space=[1.0, 1.0],
+        trip_s=[[10.0, 80.0], [70.0, 20.0]],
+        station_space=[0.0, 9.0],
+    )
+    assert best_pods(data, pods=1, stations=1).worth_s.tolist() == [[-inf, 90.0]]
+
+
 def test_polishing_never_makes_worse_and_stays_feasible() -> None:
     for seed in range(100):
         data = random_replenishment(seed)
