@@ -115,7 +115,7 @@ _DECLARED = {
         "none",
     ),
     Problem.CA: _Declared(
-        "charge assignment: robot -> where, from when and until which level it gets energy",
+        "charge assignment: robot -> where, from when and up to which level it is charged",
         "rmfs.control.ca:ChargeAssignment",
         "threshold",
         ("Charge", "Unplug"),

@@ -245,7 +245,7 @@ class Travel:
         return seconds
 
     def one_estimate_s(self, waypoint: int, other: int) -> float:
-        """Return what `estimate_s` returns, but faster, for a single pair of waypoints."""
+        """Estimate the travel time between two waypoints, in s; faster than `estimate_s`."""
         x, y, tier = self._x.item, self._y.item, self.tier.item
         metres = abs(x(other) - x(waypoint)) + abs(y(other) - y(waypoint))
         if self.tiers > 1 and tier(other) != tier(waypoint):

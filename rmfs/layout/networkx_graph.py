@@ -55,8 +55,8 @@ class GraphMeasures:
     ----------
     to_station_mean_m, to_station_max_m
         Mean and maximum length in m of the shortest path from a storage location to the nearest
-        pick station, over the storage locations that have such a path; None if none has one. Paths
-        may lead through any waypoint; elevator rides count as 0 m.
+        pick station, over the storage locations that have such a path; None if there are no such
+        locations. Paths may lead through any waypoint; elevator rides count as 0 m.
     bottlenecks
         Number of articulation points of the undirected graph without queue zones, that is, of
         waypoints whose removal would disconnect other waypoints.

@@ -19,15 +19,16 @@ from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Spac
 
 
 class PerSide(Strict):
-    """Numbers of stations or elevators on each side of a tier."""
+    """Numbers on each side of a tier: of the stations of one kind, or of elevators."""
 
     west: Amount = Field(0, description="number on the side with the smallest x")
     east: Amount = Field(0, description="number on the side with the largest x")
     south: Amount = Field(
-        0, description="number on the side with the largest y, which is at the top of a picture"
+        0, description="number on the side with the largest y, the top of a picture"
     )
     north: Amount = Field(
-        0, description="number on the side with the smallest y, which is at the bottom of a picture"
+        0,
+        description="number on the side with the smallest y, the bottom of a picture",
     )
 
     @property

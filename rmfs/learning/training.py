@@ -145,7 +145,7 @@ class Task:
         return sum(values) if all(map(isfinite, values)) else -inf
 
     def require_value(self, value: float) -> None:
-        """Check that the objective had a value in all runs with the rules before training.
+        """Check that the objective had a value in every run with the initial rules.
 
         Parameters
         ----------
@@ -155,7 +155,7 @@ class Task:
         Raises
         ------
         InputError
-            If it had none.
+            If the objective had no value in at least one of these runs.
         """
         if not isfinite(value):
             raise InputError(

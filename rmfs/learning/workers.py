@@ -110,7 +110,7 @@ class Stand:
         """Number of runs begun since ended runs were last freed."""
 
     def reset(self, seeds: Mapping[int, int | None], options: Any) -> dict[int, Any]:
-        """Start a run in each environment, with seeds by row; None: a seed is drawn."""
+        """Start a run in each environment, with the seed given for its row (None: draw a seed)."""
         for place, seed in seeds.items():
             self._begin(place, seed, options)
         self._free()

@@ -57,7 +57,7 @@ def all_tables(run: Measured, report: CheckReport | None = None) -> dict[str, pd
 def some_tables(
     run: Measured, names: Iterable[str], report: CheckReport | None = None
 ) -> dict[str, pd.DataFrame]:
-    """Return the footprint and the tables called `names`, by name.
+    """Return the footprint and the tables listed in `names`; the keys are the tables' names.
 
     In the footprint, the column `collisions` is empty if no `report` is given.
     """

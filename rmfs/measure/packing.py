@@ -27,7 +27,7 @@ class PackingLog:
         Totes of these orders; `consolidated_s` is the time at which the last tote of the order
         reached the put wall.
     held
-        Periods in which a tote could not leave its pick station, with begin and end in s.
+        Periods in which a tote could not leave its pick station, with start and end in s.
     """
 
     def __init__(self) -> None:

@@ -21,7 +21,7 @@ class PickerLog:
     units
         One row per picked unit, in chronological order.
     presence
-        Periods in which a picker was at a station, with begin and end in s.
+        Periods in which a picker was at a station, with start and end in s.
     """
 
     def __init__(self) -> None:

@@ -211,7 +211,7 @@ def version() -> str:
 
 
 def commit() -> dict[str, Any]:
-    """Return the commit of the checkout that this code runs from, and whether it is modified.
+    """Return the commit of the checkout with this code, and whether the checkout is modified.
 
     Changes in the folder `results` are ignored, so that publishing a table there does not mark the
     code as modified. If rmfs is installed from a wheel, both values are None, even if the virtual

@@ -242,7 +242,7 @@ class Recorder(Observer):
         self.open_orders[order.index] = order
 
     def order_assigned(self, order: Order) -> None:
-        """Remember when the order (or part) came to its station, and when each line did."""
+        """Store the times at which the order, or part of it, and each of its lines are assigned."""
         # the time of the order itself is that of its first part, and lines may join a part later
         now_s = self.world.now_s
         self._in_slot.setdefault((order.station, order.index), now_s)
@@ -250,7 +250,7 @@ class Recorder(Observer):
             self._line_assigned.setdefault((order.index, line.sku), now_s)
 
     def slot_freed(self, order: Order) -> None:
-        """Record the period in which the order, or part of one, was at its station."""
+        """Record the period in which the order, or a part of it, was assigned to its station."""
         since = self._in_slot.pop((order.station, order.index))
         self.slots.add(order.station, since, self.world.now_s)
 

@@ -70,7 +70,7 @@ FILES: tuple[Mapped, ...] = (
     Mapped(
         "debug.xinst",
         "none: the file shows overlapping robots; in rmfs, robots never overlap, and the checker "
-        "of the trace would report it",
+        "of the trace would report an overlap",
     ),
 )
 """RAWSim-O's output files."""

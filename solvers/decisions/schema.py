@@ -247,7 +247,7 @@ visit_s        | real | I J | robot time of a visit by a pod of a class that is 
 rate_per_h     | real | I   | visits per pod of a class, 1/h
 pods           | real | I   | number of pods of a class
 places         | real | J   | storage locations of a zone
-congestion_s_h | real | J   | delay of each visit from a zone / visits per hour from this zone, s h
+congestion_s_h | real | J   | delay per visit from a zone, divided by the visits an hour from it, s h
 """
         ),
         fields_of(
@@ -279,7 +279,7 @@ full       | real  |     | level that counts as full
 least      | real  |     | level below which no robot should fall
 short_s    | real  |     | cost of a shortfall below `least`, s of robot time per full battery
 idle       | real  |     | cost of an unneeded robot's time away, as a share of a needed robot's
-curve      | real  |     | marginal / mean value of energy: 1 + curve if empty, 1 - curve if full
+curve      | real  |     | marginal over mean value of energy: 1 + curve if empty, 1 - curve if full
 """
         ),
         fields_of(

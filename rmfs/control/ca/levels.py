@@ -31,8 +31,8 @@ class PlaceParameters(Parameters):
     there), `nearest`, or `soonest` (least total charging time of the robots at the place or on
     their way there)."""
     hand_over_share: Level | None = None
-    """A charging robot gives up its place if its level exceeds that of a robot waiting in the queue
-    by more than this share of the capacity and suffices for any task. Default: never."""
+    """A charging robot gives up its place if its level suffices for any task and exceeds the level
+    of a robot in the queue by more than this share of the capacity. Default: never."""
 
 
 class LevelParameters(PlaceParameters):

@@ -20,8 +20,8 @@ class OdIdParameters(RollingParameters):
     nodes: int = pydantic.Field(600, ge=1)
     """Maximum number of joint states that are expanded per call, over all groups."""
     choices: int = pydantic.Field(4, ge=1)
-    """Maximum number of straight runs that are considered in each joint state for the robot that
-    moves next, the best first."""
+    """Maximum number of straight runs of the robot that moves next that are considered in each
+    joint state, the best first."""
     labels: int = pydantic.Field(2_000, ge=1)
     """Maximum number of labels (partial paths) in the search for the path of a single robot."""
 

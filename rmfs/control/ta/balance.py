@@ -1,4 +1,4 @@
-"""Functions of TA rules that assign robots to stations: numbers per station, and reassignment."""
+"""Functions for TA rules that assign robots to stations: how many each station gets, and which."""
 
 from __future__ import annotations
 

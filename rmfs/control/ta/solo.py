@@ -40,8 +40,8 @@ P = TypeVar("P", bound=SoloParameters)
 class Solo(TaskAllocation[P]):
     """Finds tasks for one robot after another.
 
-    If no work is found for a robot at rest, there is no further search for this robot, and for the
-    robots that would find the same (`finds_like`), until work is added or a pod becomes available.
+    If no work is found for a robot at rest, the search is repeated only after work has been added
+    or a pod has become available. This also holds for the other robots of its group (`finds_like`).
     """
 
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:

@@ -83,7 +83,7 @@ class Zones(Tracker):
         self._cache_mask: NDArray[np.bool_] = self.cache_of >= 0
 
     def occupied(self) -> NDArray[np.int64]:
-        """Return how many places of each cache hold a pod or are reserved by a robot, (S,)."""
+        """Return how many places of each cache hold a pod or are reserved by robots, shape (S,)."""
         taken = self._cache_mask & ~self.view.storage.is_empty
         return np.bincount(self.cache_of[taken], minlength=len(self.cache_size))
 

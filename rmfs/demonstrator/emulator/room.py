@@ -186,7 +186,7 @@ class Room:
         return {name: wire.written for name, wire in wires.items() if wire and not wire.is_closed}
 
     def fetch(self, sizes: dict[str, int]) -> None:
-        """Wait until each robot named in `sizes` has received at least that number of bytes.
+        """Wait until each robot in `sizes` has received at least the number of bytes stated there.
 
         The wait for a robot also ends if nothing arrives for 0.5 s or if the robot's connection is
         closed.

@@ -1,1 +1,1 @@
-"""The server: it plans for all robots, and commands and tracks them, real or emulated."""
+"""The server, which plans for all robots, and commands and tracks those that are not simulated."""

@@ -37,7 +37,7 @@ class Clock(Protocol):
         """Wait until a time is reached, and return the messages received from robots meanwhile."""
 
     def passed(self, hub: Hub, time_us: int) -> None:
-        """Signal that everything due at a time has been done."""
+        """Signal that everything due at the time `time_us` has been done."""
 
 
 class WallClock:

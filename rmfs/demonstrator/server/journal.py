@@ -25,7 +25,10 @@ Heard = tuple[list[tuple[int, "Message"]], frozenset[int]]
 
 
 class Journal:
-    """A file that records each tick with messages received or sent, silent robots or a failure.
+    """A journal file, with an entry for each tick in which there is something to record.
+
+    There is an entry if messages were received or sent, robots were silent, or the tick failed. The
+    messages sent are not part of the entry.
 
     Parameters
     ----------
@@ -70,11 +73,11 @@ class Journal:
     def note(
         self, time_us: int, messages: list[tuple[int, Message]], silent: frozenset[int]
     ) -> None:
-        """Record the received messages and silent robots of a tick; called before processing it."""
+        """Before a tick is processed, record the messages received in it and the silent robots."""
         self._write({"time_us": time_us, "heard": messages, "silent": sorted(silent)})
 
     def note_failure(self, time_us: int, error: str) -> None:
-        """Mark the tick at a time as failed; nothing has been sent to the robots in this tick."""
+        """Mark the tick at `time_us` as failed; nothing has been sent to the robots in it."""
         self._write({"time_us": time_us, "failed": error})
 
     def _write(self, entry: dict[str, Any]) -> None:

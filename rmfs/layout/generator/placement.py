@@ -1,4 +1,4 @@
-"""Where pods and robots stand at the start."""
+"""Where pods and robots stand at the start of a run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PODS, ROBOTS = 0, 1
 
 
 def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> NDArray[np.int32]:
-    """Choose at random the storage locations of a tier's pods at the start.
+    """Choose at random the storage locations where a tier's pods stand at the start of a run.
 
     They are drawn from `places`, uniformly and without replacement. Their number is `share` times
     the number of places, rounded down.
@@ -26,7 +26,7 @@ def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> 
 
 
 def draw_robots(tiles: NDArray[np.int32], count: int, seed: int, tier: int) -> NDArray[np.int32]:
-    """Choose at random the waypoints of a tier's robots at the start.
+    """Choose at random the waypoints where a tier's robots stand at the start of a run.
 
     `count` waypoints are drawn from the road waypoints `tiles`, uniformly and without replacement.
     With the same seed, a greater `count` only adds waypoints to those drawn for a smaller one.

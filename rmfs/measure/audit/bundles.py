@@ -22,10 +22,11 @@ HAIR = 1e-6
 
 
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
-    """Check that each bundle first arrives, is then assigned and then stored, at most once each.
+    """Check that the events of each bundle are its arrival, assignment and storage, in this order.
 
-    The events of a bundle must agree on its SKU, units, pod and station. The bundles that are
-    assigned to a replenishment station and not yet stored must not exceed the station's capacity.
+    The later ones may be missing at the end of the run. The events of a bundle must agree on its
+    SKU, units, pod and station. The bundles that are assigned to a replenishment station and not
+    yet stored must not exceed the station's capacity.
     """
     steps = rows.of_kind(*STEPS)
     order = np.lexsort((steps.number, steps.order))
@@ -68,7 +69,7 @@ def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
 
 
 def check_bound(rows: Rows) -> Chapter:
-    """Check that every picked unit had been bound to its pod, and not released since."""
+    """Check that every unit, when it was picked, was bound to the pod from which it was picked."""
     kinds = (Happening.UNITS_BOUND, Happening.UNITS_UNBOUND, Happening.UNIT_PICKED)
     mine = rows.of_kind(*kinds)
     units = np.where(mine.kind == Happening.UNITS_BOUND, mine.units, -mine.units).astype(np.float64)

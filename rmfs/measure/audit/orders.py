@@ -101,9 +101,9 @@ def check(rows: Rows, finished_us: int = -1) -> Chapter:
     rows
         All events of the run.
     finished_us
-        Time (us) before which orders can be checked for completion: all picks begun before it were
-        finished by the end of the run, so an order whose last unit was picked before it must be
-        completed. -1 if unknown.
+        Time (us) before which orders can be checked for completion: all picks begun before this
+        time were finished by the end of the run, so an order whose last unit was picked before this
+        time must be completed. -1 if unknown.
     """
     orders = _Orders(rows.of_kind(*KINDS))
     orders.follow()

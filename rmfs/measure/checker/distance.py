@@ -54,9 +54,9 @@ def squared_distance(one: Pieces, other: Pieces) -> tuple[Floats, Floats, Floats
     Returns
     -------
     tuple
-        Begin and end in s of the time that the two pieces have in common, each of shape (K,), and
+        Start and end in s of the time that the two pieces have in common, each of shape (K,), and
         the coefficients a_j, shape (K, 5). The squared distance in m² is the sum of a_j u^j, where
-        u grows from 0 at the begin to 1 at the end.
+        u grows from 0 at the start to 1 at the end.
     """
     begin = np.maximum(one.t0_s, other.t0_s)
     end = np.minimum(one.t1_s, other.t1_s)

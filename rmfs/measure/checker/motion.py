@@ -120,8 +120,8 @@ class Pieces:
     def way(self, begin_s: Floats, end_s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return the line that each robot may cover between two times: its ends x0, y0, x1, y1 (m).
 
-        If a robot is guided along a piece of its motion (`guided`), it may be anywhere on it, so
-        the line covers the whole piece.
+        A robot that is guided along a piece of its motion (`guided`) may be anywhere on this piece,
+        so the line covers the whole piece.
         """
         return (
             *self.at(np.where(self.guided, self.t0_s, begin_s)),

@@ -26,7 +26,7 @@ class Disturbances(Measure):
             "disturbed_s",
             REAL,
             "s",
-            "Total duration of these disturbances within the measured time; simultaneous "
+            "Total duration of the disturbances within the measured time; simultaneous "
             "disturbances are added up",
         ),
         Column(
@@ -35,7 +35,7 @@ class Disturbances(Measure):
             "motions",
             "Motions that started late; 0 unless the scenario makes motions start late",
         ),
-        Column("lateness_s", REAL, "s", "Sum of the delays with which these motions started"),
+        Column("lateness_s", REAL, "s", "Sum of the delays with which late motions started"),
         Column(
             "plans_repaired",
             INTEGER,

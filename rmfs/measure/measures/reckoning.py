@@ -27,7 +27,7 @@ def spread_columns(name: str, meaning: str) -> tuple[Column, ...]:
     name
         Beginning of the columns' names.
     meaning
-        What the time is, for the descriptions of the columns, with an article.
+        Name of the time in the descriptions of the columns, such as "the lateness of late orders".
     """
     told = {
         "mean": "Mean of",

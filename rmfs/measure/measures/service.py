@@ -84,8 +84,8 @@ class Service(Measure):
     def footprint(self, run: EndedRun) -> dict[str, Any]:
         """Return on-time shares, and the lateness of the orders done.
 
-        Also return how many orders are overdue at the end of the run, and the age of the oldest
-        order that is not done then.
+        Also return, for the end of the run, the number of overdue orders and the age of the oldest
+        order that is neither done nor cancelled.
         """
         orders, names = served(run.logs), class_names(run.logs)
         done, cancelled, overdue = orders["done"], orders["cancelled"], orders["overdue"]

@@ -102,7 +102,7 @@ def edges(logs: Logs) -> pd.DataFrame:
 
 
 def waypoint_kinds(layout: Layout) -> NDArray[np.str_]:
-    """Return the kind of each waypoint, with the values of `from_kind`; shape (waypoints,)."""
+    """Return the kind of each waypoint, as in the column `from_kind`, shape (waypoints,)."""
     kinds = np.full(layout.waypoints, "road", dtype="<U13")
     kinds[layout.is_queue] = "queue"
     kinds[layout.is_storage] = "storage"

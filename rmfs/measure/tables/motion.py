@@ -72,9 +72,10 @@ PLANS = (
 )
 
 _PURPOSES = {
-    "pick": "while fetching a pod for a pick station, bringing it there, or standing there",
-    "replenish": "while fetching a pod for a replenishment station, bringing it there, or standing "
-    "there",
+    "pick": "while fetching a pod for a pick station, bringing the pod to the station, or standing "
+    "at the station",
+    "replenish": "while fetching a pod for a replenishment station, bringing the pod to the "
+    "station, or standing at the station",
     "store": "while fetching or carrying a pod for any other purpose",
     "rest": "without a pod and without a task that involves a pod",
 }

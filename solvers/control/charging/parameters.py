@@ -19,8 +19,8 @@ class ScheduleParameters(LevelParameters):
 
     hand_over_share: Level | None = None
     """Until the first answer, and after a failure: a charging robot gives up its place if its level
-    exceeds that of a robot waiting in the queue by more than this share of the capacity and
-    suffices for any task. Default: never. Otherwise, the schedule determines who leaves."""
+    suffices for any task and exceeds the level of a robot in the queue by more than this share of
+    the capacity. Default: never. At all other times, the schedule determines who leaves."""
     below_share: Share = 0.3
     """Until the first answer, and after a failure: a robot charges when its battery level falls
     below this share of the capacity."""

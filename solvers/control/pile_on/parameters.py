@@ -30,8 +30,8 @@ class JointParameters(SearchParameters):
     different times."""
     split_orders: Annotated[int, pydantic.Field(ge=0)] | None = None
     """With `split`, maximum number of orders that are split at the same time. By default, as many
-    as the put wall holds, or any number if there is none. If a number is given, it applies instead
-    of the space on the put wall."""
+    as the put wall holds, or any number without a put wall. If a number is given, it applies
+    instead of the space on the put wall."""
     part_s: NotNegative = 0.0
     """With `split`, cost of an additional tote of an order, in seconds of robot time. An order is
     split only if that costs less than calling the pods that would serve it whole at one station

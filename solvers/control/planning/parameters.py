@@ -27,8 +27,8 @@ class PlanningParameters(SearchParameters):
     different times."""
     split_orders: Annotated[int, pydantic.Field(ge=0)] | None = None
     """With `split`, maximum number of orders that are split at the same time. By default, as many
-    as the put wall holds, or any number if there is none. If a number is given, it applies instead
-    of the space on the put wall."""
+    as the put wall holds, or any number without a put wall. If a number is given, it applies
+    instead of the space on the put wall."""
     visits: Annotated[int, pydantic.Field(ge=1, le=32)] = 6
     """Maximum number of new visits planned per station, in addition to the visits of pods under
     way."""
@@ -58,8 +58,8 @@ class PlanningParameters(SearchParameters):
     part of this value (apparent tardiness cost, Vepsalainen and Morton 1987). 0: due times are
     ignored."""
     late_within_s: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 300.0
-    """If a line is served this number of seconds before its due time, the value `late_s` counts
-    less by the factor e than at the due time. It should be about as long as the time from a plan to
+    """If a line is served this number of seconds before its due time, the value `late_s` counts 1/e
+    times as much as at the due time. This number should be about as long as the time from a plan to
     its last visit."""
     open_s: NotNegative = 60.0
     """Additional value of serving a line whose order already has a slot, in seconds of robot time.

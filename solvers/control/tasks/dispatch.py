@@ -97,10 +97,10 @@ class DispatchControl(Asking[DispatchParameters]):
     a pod from storage to a station with work. The number of tasks of the second kind at a station
     is the least of three numbers: the number of robots without a pod, the number of open requests
     or waiting bundles of the station, and the number of further robots that may come to the station
-    (`robots_per_station`). With `matching`, the sum of travel time and weighted lateness of orders
-    is minimised (linear assignment). With `balance`, waiting behind other pods counts as well
-    (minimum-cost flow). Tasks that are not worth the trip are left out; a robot without a task
-    stores its pod if it carries one, and otherwise rests.
+    (`robots_per_station`). With the method `matching`, the sum of travel time and weighted lateness
+    of orders is minimised (linear assignment). With the method `balance`, waiting behind other pods
+    counts as well (minimum-cost flow). Tasks that are not worth the trip are left out; a robot
+    without a task stores its pod if it carries one, and otherwise rests.
 
     As PPS chooses the pod only later, the time that a robot needs to bring a pod is estimated as
     the mean over all pods that the station could use. The delay that congestion is expected to
