@@ -247,7 +247,7 @@ visit_s        | real | I J | robot time of a visit by a pod of a class that is 
 rate_per_h     | real | I   | visits per pod of a class, 1/h
 pods           | real | I   | number of pods of a class
 places         | real | J   | storage locations of a zone
-congestion_s_h | real | J   | delay per visit from a zone, divided by the visits an hour from it, s h
+congestion_s_h | real | J   | delay per visit from a zone, divided by visits an hour from it, s h
 """
         ),
         fields_of(
