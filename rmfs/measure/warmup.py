@@ -14,7 +14,7 @@ BATCH = 5
 
 
 def mser(values: ArrayLike, batch: int = BATCH) -> int | None:
-    """Return the number of initial observations to drop, by the marginal standard error rule.
+    """Return how many initial observations to drop according to the marginal standard error rule.
 
     The rule (White 1997) drops the first d of the batch means Z_1 ... Z_n. It chooses the d <= n/2
     that minimises V / (n - d)², where V is the sum of (Z_j - m)² over all j > d, and m is the mean

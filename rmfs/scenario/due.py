@@ -80,7 +80,7 @@ class ClassesDue(Block):
         return partial(_by_class, self._bounds(), tuple(one.offset_s for one in self.classes))
 
     def class_of(self, uniform: float) -> int:
-        """Return the index of the class for a number in [0, 1), the same as in `sampler`."""
+        """Return the index of the class whose offset the sampler gives for a number in [0, 1)."""
         return bisect_right(self._bounds(), uniform)
 
     def _bounds(self) -> tuple[float, ...]:

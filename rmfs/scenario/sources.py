@@ -97,9 +97,9 @@ def bundle_stream(scenario: Scenario, skus: SkuSet, largest_pod: float) -> Bundl
 def time_zero(scenario: Scenario) -> datetime | None:
     """Return the date and time of time zero of a scenario.
 
-    Time zero is `start` if the scenario specifies it. Otherwise, it is the same for the files of
-    orders and bundles: `time_of_day_s` after the last midnight before the earliest row of both. The
-    result is None if there is neither `start` nor a file with dates.
+    Time zero is `start` if the scenario specifies it. Otherwise, it is `time_of_day_s` after the
+    last midnight before the earliest row in the files of orders and bundles, and is the same for
+    both files. The result is None if there is neither `start` nor a file with dates.
 
     Raises
     ------

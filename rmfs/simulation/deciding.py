@@ -274,8 +274,8 @@ class Deciding:
             The call to an optimiser on whose answer the decision is based; None if the controller's
             own rule decided.
         modelled
-            Whether optimisers can make this kind of decision. If so, and the controller's own rule
-            made it, it counts as a decision of the rule in place of an optimiser.
+            Whether optimisers can make this kind of decision. If so, a decision of the controller's
+            own rule is counted as one that the rule made in place of an optimiser.
         """
         self._nested_ns += wall_ns
         self.record(problem, wall_ns, int(decided), int(decided and call is None))

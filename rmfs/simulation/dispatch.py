@@ -149,7 +149,7 @@ class Dispatch:
     # --- reports of traffic ---------------------------------------------------------------------
 
     def departed(self, index: int, _place: int = -1) -> None:
-        """Release storage locations that a robot leaves; send the robots waiting for them there."""
+        """Release storage locations that a robot leaves, and send waiting robots to them."""
         robot = self._world.robots[index]
         if len(robot.places) < 2 and robot.waypoint in robot.places:
             return

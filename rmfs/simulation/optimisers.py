@@ -54,7 +54,7 @@ class OptimiserGateway:
 
     @property
     def waits(self) -> bool:
-        """Whether solvers run beside the simulation; it may then proceed only up to `limit_us`."""
+        """Whether solvers run beside the simulation, which may then advance only to `limit_us`."""
         return self._pacing.waits
 
     def begin(self, modules: Iterable[str]) -> None:

@@ -135,7 +135,7 @@ class Outside:
         return self.taken < len(self.given) and self.given[self.taken][0] == question
 
     def drop_taken(self) -> None:
-        """Drop the answers received so far: they were used when prepared tasks were started."""
+        """Remove from `given` the answers that were used to start prepared tasks."""
         del self.given[: self.taken]
         self.taken = 0
 

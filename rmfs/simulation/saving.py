@@ -83,9 +83,10 @@ def refuse_other(path: Path, simulation: Kernel) -> None:
 
 
 def inputs_of(simulation: Kernel) -> dict[str, str]:
-    """Return, by name, the seed of a simulation, and what else a resumed run must agree with it in.
+    """Return, by name, the values in which a resumed run must agree with a simulation.
 
-    The other values are hashes of inputs and pacing, and what is recorded of the run.
+    They are the seed; hashes of the layout, scenario, controllers, pacing and choice of measures;
+    and whether a trace is recorded.
     """
     measures = getattr(simulation, "measures", [])
     return {

@@ -57,9 +57,9 @@ class Hands(Protocol):
         ...
 
     def first_of(self, station: int, task: PickTask) -> Pick | None:
-        """Return the pick of a task to make next, or None if the picker has no preference.
+        """Return the task's next pick, or None if the picker has no preference.
 
-        With None, the first pick of the task for an order that has a slot is made.
+        In the latter case, the next pick is the task's first one for an order that has a slot.
         """
         ...
 

@@ -52,17 +52,18 @@ class Agent(NamedTuple):
     robot
         Index of the robot.
     waypoint
-        Start of the rest of its path: where it stands, or where its granted motion ends.
+        Waypoint at which the rest of the robot's path begins: where the robot stands, or where its
+        granted motion ends.
     heading_rad
-        Its heading there.
+        Heading of the robot at this waypoint.
     ready_us
-        Earliest time in us at which it can continue from there.
+        Earliest time in us at which the robot can continue from this waypoint.
     goal
         Destination waypoint.
     loaded
-        Whether it carries a pod.
+        Whether the robot carries a pod.
     needs_plan
-        Whether it has no path, or its path was refused.
+        Whether the robot has no path, or its path was refused.
     to_go_us
         Unhindered time to the goal in us; None if there is no path.
     """
@@ -106,7 +107,7 @@ class PathPlanner(Protocol):
 
 
 class Conversation:
-    """Adapter between a planner and the core, which passes agents as plain tuples."""
+    """Adapter between a planner and the core; converts plain tuples of the core to `Agent`."""
 
     def __init__(self, planner: PathPlanner) -> None:
         self._planner = planner

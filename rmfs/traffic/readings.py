@@ -64,9 +64,9 @@ class Readings:
 
         Columns with one entry for each pair of waypoint and purpose that occurred are
         `stays_waypoint`, `stays_purpose`, `stays_visits` and `stays_waiting_s`. The purpose is the
-        number of the station for which a robot works, also while it fetches the pod. It is S, the
-        number of stations, if the robot stores a pod, or fetches one but not for a station, and S +
-        1 in all other cases.
+        number of the station for which a robot works, even while the robot still fetches the pod.
+        If a robot stores a pod, or fetches one that is not for a station, the purpose is S, the
+        number of stations; in all other cases, it is S + 1.
         """
         counted: dict[str, NDArray[Any]] = self._core.heat()
         at, waypoints = counted["stays_waypoint"], len(counted["loaded_visits"])
@@ -111,9 +111,9 @@ class Readings:
         """Follow a run: return the part of the trace that previous calls have not returned.
 
         The motion that each robot is currently executing is included, and is returned again until
-        it has ended. From its `t0_us` on, a row therefore replaces whatever earlier calls returned
-        for its robot. If a robot stands still during several calls, it gets several consecutive
-        rows, which `joined_holds` merges.
+        it has ended. A row therefore replaces whatever earlier calls returned for the same robot
+        from the row's `t0_us` on. If a robot stands still during several calls, it gets several
+        consecutive rows, which `joined_holds` merges.
 
         Parameters
         ----------
@@ -135,14 +135,14 @@ class Readings:
     def counters(self) -> dict[str, float]:
         """Return counters of path planning since the last reset.
 
-        The counters are `plans` (of legs), `plan_failures`, `replans`, `refusals` (paths of a
-        rolling planner that were discarded because not even their first straight run was free),
-        `improvements` (plans replaced by better ones), `expansions` (labels expanded),
-        `cost_tables` (tables of travel times computed since time zero), and the wall time
-        `planning_s` in s. `planning_charged_s`, the simulated time in s that plans took, is 0
-        unless `Traffic.set_pace` was called. `motions`, `late_motions`, `lateness_s` (their total
-        delay in s) and `repairs` (plans replaced because another robot was late) are 0 unless
-        `Traffic.set_lateness` was called.
+        The counters are `plans` (trips for which a path was planned), `plan_failures`, `replans`,
+        `refusals` (paths of a rolling planner that were discarded because not even their first
+        straight run was free), `improvements` (plans replaced by better ones), `expansions` (labels
+        expanded), `cost_tables` (tables of travel times computed since time zero), and the wall
+        time `planning_s` in s. `planning_charged_s`, the simulated time in s that plans took, is 0
+        unless `Traffic.set_pace` was called. `motions`, `late_motions`, `lateness_s` (the total
+        delay of late motions in s) and `repairs` (plans replaced because another robot was late)
+        are 0 unless `Traffic.set_lateness` was called.
         """
         counts: dict[str, float] = dict(self._core.counters())
         counts["planning_s"] = counts.pop("planning_ns") / 1e9
@@ -154,8 +154,8 @@ class Readings:
         """Return the searches for plans of trips since time zero; none without `Traffic.set_pace`.
 
         The columns are `robot`, `asked_us` (when the robot asked for a plan), `begun_us` (when the
-        planner began with it), `labels`, `took_us` (simulated time that the search took), `found`
-        and `wall_s` (wall time of the search).
+        planner began the search), `labels`, `took_us` (simulated time that the search took),
+        `found` and `wall_s` (wall time of the search).
         """
         return self._core.plans()
 

@@ -75,7 +75,7 @@ class Traffic(Readings):
         self.__dict__.update(_of(build(layout, options), options))
 
     def fork(self, memo: dict[int, Any] | None = None) -> Self:
-        """Copy the traffic; with the same commands both continue identically, bit for bit.
+        """Copy the traffic; given the same commands, the copy and the original stay bit-identical.
 
         Constant data and past records are shared, so a copy takes milliseconds. A planner written
         in Python is deep-copied. `copy.deepcopy` does the same.
@@ -332,7 +332,7 @@ class Traffic(Readings):
         Returns
         -------
         Whether the speed was changed. It is not changed if the robot drives, lifts or sets down a
-        pod, or if another robot that is already driving would have to wait for it.
+        pod, or if another robot that is already driving would have to wait for this robot.
         """
         kind = int(self._layout.robot_kind[robot]) + level * len(self._layout.robot_kinds)
         return self._core.change_kind(robot, kind)

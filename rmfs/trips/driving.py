@@ -34,9 +34,9 @@ class TripRun:
     warmup_s, duration_s
         Simulated time of the warm-up, and measured time after it, in s.
     end_s
-        Simulated time at which driving ended, in s: after `duration_s` or, if no robot could move
-        any more, earlier, perhaps in the warm-up. Rates refer to `duration_s` all the same, as
-        nothing would have happened in the rest of it.
+        Simulated time at which driving ended, in s: the end of the measured time or, if no robot
+        could move any more, an earlier time, perhaps in the warm-up. Even then, rates refer to the
+        whole of `duration_s`, as nothing more would have happened.
     wall_s
         Wall time after the warm-up, in s.
     stalled

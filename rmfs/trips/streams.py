@@ -51,7 +51,7 @@ class TripStream(Protocol):
         """Return the commands that follow an event of traffic."""
 
     def given(self, command: Command) -> Iterable[Command]:
-        """Return commands for other robots that become possible once `command` has been given."""
+        """Return commands that can be given to other robots once `command` has been given."""
 
 
 class PodTrips:
@@ -101,7 +101,7 @@ class PodTrips:
             yield from self._next(0, robot)
 
     def follow(self, time_us: int, kind: int, robot: int, _value: int) -> Iterator[Command]:
-        """Return the next command of a robot that has reached a station or finished its program."""
+        """Return the next command of a robot that has reached a station or done all its steps."""
         if kind == EventKind.AT_HEAD:
             yield self._store(time_us, robot)
         elif kind == EventKind.IDLE and robot not in self._waiting[self._station[robot]]:

@@ -106,7 +106,7 @@ def served(logs: Logs) -> pd.DataFrame:
         Columns `order`, `created_s`, `due_s`, `done_s` (empty if the order is not done),
         `cancelled_s`, `class` (index in `class_names`), and the flags `done`, `cancelled`,
         `overdue` (neither done nor cancelled, and due before the end of the run) and `on_time`
-        (done by the due time). All flags are false for an order that still waits and is not
+        (done by the due time). All flags are false for an order that is still unfinished but not
         overdue.
     """
     frame = seen(logs)[["order", "created_s", "due_s", "completed_s", "cancelled_s"]]

@@ -110,7 +110,7 @@ def robots(logs: Logs) -> pd.DataFrame:
 
 
 def with_task(logs: Logs, task: str) -> Steps:
-    """Return the number of robots with a given kind of task over time, including the warm-up."""
+    """Return how many robots have a given kind of task, as a function of time from time zero on."""
     tasks = logs.tasks
     # a task under way at the end of the run still counts then; one that has just ended does not
     ends = tasks["end_s"].where(tasks["robot"].duplicated(keep="last"))

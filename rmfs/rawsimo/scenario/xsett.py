@@ -1,6 +1,6 @@
 """Reader for RAWSim-O's settings files (.xsett), which define scenarios.
 
-Every element is mapped to a parameter of rmfs, or listed in a note with the reason why it is not.
+Every element is mapped to a parameter of rmfs or listed in a note that states why it is not used.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ class BacklogDemand(_Demand):
 class PoissonDemand(_Demand):
     """Orders arrive at random times, whatever is in stock.
 
-    By default, orders that stock cannot serve wait (see `Shortage`).
+    By default, an order waits if stock cannot serve it (see `Shortage`).
     """
 
     mode: Literal["poisson"] = Field("poisson", description="orders arrive at random times")
@@ -65,7 +65,7 @@ class PoissonDemand(_Demand):
 
 
 class StreamDemand(_Demand):
-    """Orders come from a file; by default, those that stock cannot serve wait (see `Shortage`)."""
+    """Orders come from a file and, by default, wait if stock cannot serve them (see `Shortage`)."""
 
     mode: Literal["stream"] = Field("stream", description="orders come from a file")
     file: StreamFile = Field(

@@ -26,7 +26,7 @@ class Breakdowns(_Repeated):
 
 
 class SlowRobots(_Repeated):
-    """A robot drives more slowly for a period that begins and ends while it stands still."""
+    """A robot drives more slowly for a period, from one standstill to a later one."""
 
     speed_share: float = Field(
         0.5, gt=0, lt=1, description="speed of a slow robot, as a share of its top speed"

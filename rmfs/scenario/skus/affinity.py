@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 class Affinity:
     """Weights of pairs of SKUs, for lines whose SKU is drawn by affinity to the line before.
 
-    The probability of a SKU is then in proportion to the weight of the pair (SKU of the line
-    before, this SKU).
+    For such a line, the probability of a SKU is in proportion to the weight of the pair (SKU of the
+    line before, this SKU).
 
     Attributes
     ----------

@@ -58,8 +58,8 @@ class Alphabet:
 def letter_sku_set(config: LetterSkus) -> SkuSet:
     """Return the SKUs of a list of words.
 
-    The popularity of a SKU is the frequency of its letter in all words times the weight of its
-    colour.
+    The popularity of a SKU is the frequency of its letter in all words, multiplied by the weight of
+    its colour.
 
     Raises
     ------

@@ -1,10 +1,11 @@
 """Fit of affinity, that is, of how often the same SKUs are ordered together.
 
-The generator gives SKUs random partners. With a certain probability, the share of affinity, it
-draws the SKU of a line after the first from the partners of the preceding line's SKU, and otherwise
-by popularity. To fit this share, orders are simulated with several shares. Interpolation then
-yields the share for which the lift of the simulated orders equals that of the file. The lift states
-how often pairs of SKUs in neighbouring lines recur, relative to chance (see `lift`).
+The generator gives SKUs random partners. The SKU of each line after the first is drawn, with a
+certain probability, from the partners of the preceding line's SKU, and otherwise by popularity.
+This probability is the share of affinity. To fit it, orders are simulated with several shares.
+Interpolation then yields the share for which the lift of the simulated orders equals that of the
+file. The lift states how often pairs of SKUs in neighbouring lines recur, relative to chance (see
+`lift`).
 """
 
 from __future__ import annotations
@@ -46,8 +47,9 @@ def lift(first: NDArray[np.int64], second: NDArray[np.int64], skus: int) -> floa
     """Return how often pairs of SKUs recur, divided by how often they would recur by chance.
 
     Recurrence is measured by the probability that two of the pairs, chosen at random, are equal.
-    Pairs by chance are pairs of two different SKUs that are otherwise drawn independently. The
-    result is nan if there are fewer than `LEAST_PAIRS` pairs or no pair recurs.
+    For recurrence by chance, the two SKUs of each pair are assumed to be different, but otherwise
+    drawn independently. The result is nan if there are fewer than `LEAST_PAIRS` pairs or no pair
+    recurs.
 
     Parameters
     ----------

@@ -65,14 +65,15 @@ class WorkPlanning(_Planning):
 
     mode: Literal["work"] = "work"
     seconds_per_label: NotNegative = SECONDS_PER_LABEL
-    """Simulated seconds per label; by default those of the machine of the published figures."""
+    """Simulated seconds per label; by default as measured on the machine that produced the
+    published figures."""
     seconds_per_search: NotNegative = SECONDS_PER_SEARCH
-    """Additional simulated seconds per search; by default those of the machine of the published
-    figures."""
+    """Additional simulated seconds per search; by default as measured on the machine that produced
+    the published figures."""
 
 
 class WallPlanning(_Planning):
-    """The simulated time needed to compute a plan is the wall time of its search, times `speed`."""
+    """Computing a plan takes `speed` seconds of simulated time per second of wall time."""
 
     mode: Literal["wall"] = "wall"
     speed: Positive = 1.0

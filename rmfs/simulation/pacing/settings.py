@@ -33,7 +33,10 @@ class InstantPacing(_Mode):
 
 
 class WallPacing(_Mode):
-    """Optimisers run beside the simulation; their wall time, times `speed`, is simulated time."""
+    """Optimisers run beside the simulation; their wall time counts as simulated time.
+
+    An optimiser takes `speed` seconds of simulated time per second of wall time.
+    """
 
     mode: Literal["wall"] = "wall"
     speed: Positive = 1.0
@@ -54,13 +57,13 @@ class WorkPacing(_Mode):
     mode: Literal["work"] = "work"
     seconds_per_unit: NotNegative | dict[str, NotNegative] = Field(default_factory=dict)
     """Simulated seconds per unit of work: one number for all back ends, or numbers by name; by
-    default those of the machine of the published figures."""
+    default as measured on the machine that produced the published figures."""
     seconds_per_call: NotNegative | None = None
-    """Additional simulated seconds per call, for all back ends; by default those of the machine of
-    the published figures."""
+    """Additional simulated seconds per call, for all back ends; by default as measured on the
+    machine that produced the published figures."""
     seconds_per_entry: NotNegative | None = None
     """Simulated seconds per nonzero entry of the solver's model, for all back ends; by
-    default those of the machine of the published figures."""
+    default as measured on the machine that produced the published figures."""
 
 
 class FixedPacing(_Mode):
