@@ -19,7 +19,7 @@ from rmfs.layout.values import Amount, Metres, Radius, Rate, Seconds, Some, Spac
 
 
 class PerSide(Strict):
-    """Numbers on each side of a tier: of the stations of one kind, or of elevators."""
+    """Numbers of stations of one kind, or of elevators, on each side of a tier."""
 
     west: Amount = Field(0, description="number on the side with the smallest x")
     east: Amount = Field(0, description="number on the side with the largest x")
@@ -114,8 +114,8 @@ class LayoutParameters(Strict):
         "tim",
         description="pattern of the lanes in the halls (the areas between the storage area and "
         'the queues of stations). With "tim", two lanes run along each hall, beside the queues; '
-        'with "highway", a lane runs along the hall on each tile of its width. With both, further '
-        "lanes cross the hall",
+        'with "highway", a lane runs along the hall on each tile of its width. In both patterns, '
+        "further lanes cross the hall",
     )
     two_directional_aisles: bool = Field(
         False, description="whether all aisles are two-way; otherwise all are one-way"

@@ -28,7 +28,8 @@ FILES: tuple[Mapped, ...] = (
     Mapped("traveleddistanceprogression.csv", "`series.distance_m`"),
     Mapped(
         "inventorylevel.csv",
-        "`series.inventory_share`; SKUs in stock and inversions are not recorded",
+        "`series.inventory_share`; SKUs in stock and inversions (a better pod at a worse "
+        "place) are not recorded",
     ),
     Mapped(
         "performance.csv",

@@ -49,7 +49,7 @@ class NetworkRule(PickOrderAssignment[NetworkParameters]):
         self._scorer = Scorer("poa", parameters.network, parameters.candidates)
 
     def decide(self) -> Iterator[AssignOrder]:
-        """Yield assignments until assigning no order has the highest score."""
+        """Yield assignments until the option to assign no order has the highest score."""
         while True:
             found = candidates_for(self.view, Question(Problem.POA, "turn"))
             row = self._scorer.best_of(found, self.view)

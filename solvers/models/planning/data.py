@@ -26,9 +26,9 @@ class Planning:
     of a station are numbered from 0, those of pods under way included.
 
     A line is served by a single visit. A waiting order occupies a slot from the first visit that
-    serves it to the last, at which it *closes*; an open order already occupies one. Between visits,
-    a station keeps one slot free for orders that are served by a single visit: they use this slot
-    one after the other. A station whose open orders occupy all slots keeps none free (see `kept`).
+    serves it to the last, at which it *closes*; an open order already occupies one. Orders that are
+    served by a single visit take turns at one slot during this visit; the station keeps this slot
+    free between visits. A station whose open orders occupy all slots keeps none free (see `kept`).
 
     Parameters
     ----------
