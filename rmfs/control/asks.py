@@ -153,7 +153,7 @@ class Outcome(StrEnum):
     """Whether and how a call to an optimiser ended."""
 
     WAITING = "waiting"
-    """No answer has arrived, so far or by the end of the run."""
+    """No answer has taken effect, so far or by the end of the run."""
     SOLUTION = "solution"
     NOTHING = "nothing"
     """The optimiser ended without a solution."""
@@ -226,6 +226,14 @@ class Call:
         if self.completed_us < 0:
             return float("nan")
         return (self.completed_us - self.requested_us) / 1e6
+
+    def take_effect(self, at_us: int) -> None:
+        """Record that the answer, or the failure, takes effect at a simulated time, in us."""
+        self.completed_us = at_us
+        if self.answer is None:
+            self.outcome = Outcome.FAILED
+        else:
+            self.outcome = Outcome.NOTHING if self.solution is None else Outcome.SOLUTION
 
     def left(self, name: str, parts: Sequence[D]) -> Iterator[D]:
         """Yield the parts of an answer that have not been handled yet.

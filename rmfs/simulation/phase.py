@@ -297,7 +297,7 @@ class DecisionPhase:
     def tell(self, call: Call) -> None:
         """Pass an answer to the controller that asked, and apply its decisions."""
         call.controller.in_flight -= 1
-        call.completed_us = self._agenda.now_us
+        call.take_effect(self._agenda.now_us)
         self._carry_out(call)
 
     def _carry_out(self, call: Call) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
-from rmfs.control.asks import Outcome
 from rmfs.measure.provenance import commit, version
 from rmfs.observer import Observer
 from rmfs.solvers.decisions.asking import found_of, question_of
@@ -73,7 +72,7 @@ class QuestionListener(Observer):
             "stale": call.stale,
         }
         recorded = None
-        if call.answer is not None and call.outcome is not Outcome.WAITING:
+        if call.answer is not None:  # it may be known before it takes effect
             recorded = found_of(question.family, call.answer)
         self.take(
             Decision(

@@ -12,11 +12,12 @@ import numpy as np
 import pytest
 from hand_made import HandMade
 
-from rmfs.control.asks import Outcome
+from rmfs.control.asks import Call, Outcome
 from rmfs.control.choices import choose
 from rmfs.control.problems import Problem
 from rmfs.control.solutions import from_text, to_text
 from rmfs.errors import InputError
+from rmfs.observer import Observer
 from rmfs.simulation.pacing import OptimiserError, pacing_settings
 from rmfs.simulation.pacing.computed import SECONDS_PER_CALL, SECONDS_PER_UNIT
 
@@ -69,6 +70,28 @@ def test_a_distribution_is_drawn_from_the_seed() -> None:
     table = {"distribution": "exponential", "rate": 0.5}
     first, second = (asked("fixed", [(["seconds"], table)])[0].told[0][0] for _ in range(2))
     assert first == second > 1.0
+
+
+@pytest.mark.parametrize("pacing", ["fixed=700", "work"])
+def test_a_question_without_an_answer_by_the_end_is_waiting(pacing) -> None:
+    """Questions are solved when they are asked, but the answer comes after 600 s."""
+    asked_calls: list[Call] = []
+
+    class Noting(Observer):
+        def optimiser_asked(self, call: Call) -> None:
+            asked_calls.append(call)
+
+    overrides = [(["seconds_per_call"], 700.0)] if pacing == "work" else []
+    made = HandMade(
+        {"robots": 1},
+        observers=(Noting(),),
+        pacing=pacing_settings(pacing, overrides),
+        poa={"name": "asking:Asking"},
+    )
+    made.order(1.0, s0=1)
+    made.run()
+    (call,) = asked_calls
+    assert (call.outcome, call.completed_us) == (Outcome.WAITING, -1)
 
 
 def test_what_the_rule_did_meanwhile_is_stale() -> None:

@@ -82,7 +82,8 @@ DECISIONS = (
         "",
         "solution; nothing (the optimiser ended without a solution); failed (it crashed, "
         "raised an error or exceeded its time limit); abandoned (the controller was "
-        "exchanged before the answer arrived); or waiting (no answer by the end)",
+        "exchanged before the answer arrived); or waiting (no answer had taken effect by the "
+        "end)",
     ),
     Column("failure", TEXT, "", "Reason for the failure if the outcome is failed"),
     Column("completed_s", REAL, "s", "Time at which the answer took effect"),

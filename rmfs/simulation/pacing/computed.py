@@ -7,7 +7,7 @@ from abc import ABC, abstractmethod
 from math import ceil
 from typing import TYPE_CHECKING
 
-from rmfs.control.asks import Outcome, checked
+from rmfs.control.asks import checked
 from rmfs.errors import InputError
 from rmfs.random import Stream, generator
 from rmfs.simulation.agenda import NEVER_US
@@ -98,7 +98,6 @@ class Computed(ABC):
                 f"({_place(error)})"
             ) from error
         call.answer = answer
-        call.outcome = Outcome.NOTHING if answer.solution is None else Outcome.SOLUTION
         self._give(call, call.requested_us + ceil(self.seconds(answer) * 1e6))
 
     def limit_us(self, now_us: int) -> int:

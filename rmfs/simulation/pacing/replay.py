@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from rmfs.control.asks import Answer, Outcome
+from rmfs.control.asks import Answer
 from rmfs.control.solutions import from_text
 from rmfs.simulation.agenda import NEVER_US
 from rmfs.simulation.pacing.errors import ReplayError
@@ -52,7 +52,7 @@ class Replay:
         """
         row = self._recorded(call)
         completed_us = int(row["completed_us"])
-        call.outcome, call.failure = Outcome(row["outcome"]), row["failure"]
+        call.failure = row["failure"]
         if row["status"]:
             call.answer = Answer(
                 solution=from_text(row["solution"]) if row["solution"] else None,

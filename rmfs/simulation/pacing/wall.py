@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
 
-from rmfs.control.asks import Outcome
 from rmfs.simulation.agenda import NEVER_US
 from rmfs.simulation.pacing.workers import DeadWorkerError, Reply, Worker, Workers
 
@@ -170,10 +169,6 @@ class Wall:
         call = asked.call
         self._open.remove(asked)
         call.answer, call.failure = reply.answer, reply.failure
-        if reply.answer is None:
-            call.outcome = Outcome.FAILED
-        else:
-            call.outcome = Outcome.SOLUTION if call.solution is not None else Outcome.NOTHING
         elapsed_us = ceil((reply.at_s - asked.since_s) * self._us_per_s)
         # what has been simulated meanwhile cannot be undone
         self._give(call, max(call.requested_us + elapsed_us, now_us + 1))
