@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import random
+from collections import Counter
 from functools import cache
 from math import inf, nan
 from typing import Any
@@ -159,6 +160,21 @@ def test_what_a_rule_asks_while_it_carries_out_an_answer_is_decided_outside(
     inside.run()
     assert told(run) == told(inside)
     assert measured(run) == measured(inside)
+
+
+@pytest.mark.parametrize("rules", ["pile-on-dispatch", "ta-balance", "ta-matching"])
+def test_nobody_is_asked_for_ever_about_a_pod_that_is_not_to_be_stored(rules: str) -> None:
+    """A rule with an optimiser that answers at once does not ask it again at the same instant."""
+    given = {"scenario.warmup_s": 0, "scenario.duration_s": 120, "layout.robots": 10}
+    run = rmfs.Simulation("small", "small", rules, seed=1, set=given, outside=["psa"])
+    asked: Counter[tuple[float, int]] = Counter()
+    while (decision := run.step()) is not None:
+        assert decision.robot is not None
+        about = decision.now_s, decision.robot.index
+        asked[about] += 1
+        assert asked[about] <= 4
+        decision.decline()
+    assert asked
 
 
 def test_all_problems_at_once() -> None:

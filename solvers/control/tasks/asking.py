@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from math import nan
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import pydantic
@@ -65,6 +66,8 @@ class Asking(TaskAllocation[P]):
         super().__init__(parameters, view, rng)
         self._rest = RestPlaces(view, parameters.rest, self.draw)
         self._seen: tuple[tuple[int, ...], ...] | None = None
+        self._told: frozenset[int] = frozenset()
+        self._told_s = nan
         self._buffer = Buffer(view, parameters.buffer_s)
 
     @abstractmethod
@@ -88,8 +91,11 @@ class Asking(TaskAllocation[P]):
         With `rule_meanwhile`, let the rule decide for robots with a pod while an answer is pending.
         """
         self._consult = consult
-        if self._buffer.is_over(not self.in_flight and self._has_news()):
+        if not self._was_just_told() and self._buffer.is_over(
+            not self.in_flight and self._has_news()
+        ):
             yield self._ask(consult)
+        self._told = frozenset()
         if self.in_flight and self.parameters.rule_meanwhile:
             for robot in list(self.view.asking.values()):
                 if robot.pod >= 0 and robot.task is None:
@@ -109,6 +115,8 @@ class Asking(TaskAllocation[P]):
             # these robots have come to need a task meanwhile; those without an answer would get
             # none again
             yield from own(self.decide(consult))
+        if call.paced_s == 0:
+            self._told, self._told_s = frozenset(told), self.view.now_s
 
     def rest_place(self, robot: Robot) -> int:
         """Choose the resting place of a robot by the rest rule."""
@@ -140,6 +148,18 @@ class Asking(TaskAllocation[P]):
         self._seen = self._versions()
         robots = [robot for robot in self.view.asking.values() if robot.task is None]
         return self.question([*robots, *self.view.resting.values()], consult)
+
+    def _was_just_told(self) -> bool:
+        """Whether `decide` goes on after an answer that it got at once.
+
+        If a program outside the simulation has to decide something while the answer is carried out,
+        `decide` is interrupted at its question and starts anew. Robots that got no task would get
+        none again.
+        """
+        if not self._told or self._told_s != self.view.now_s:
+            return False
+        waiting = {robot.index for robot in self.view.asking.values() if robot.task is None}
+        return waiting <= self._told
 
     def _has_news(self) -> bool:
         """Whether a robot needs a task, or one at rest could have new work."""
