@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.problems import Problem
+from rmfs.control.turns import Turn
 from rmfs.errors import InputError
 
 if TYPE_CHECKING:
@@ -109,7 +110,8 @@ class Outside:
         Function of the view that returns whether TA has nothing to decide; if so, the turn of TA is
         ended without a question. Default: none, so that a question is asked in every turn of TA.
     advisor
-        Iterator over the decisions that the installed rule would make in the current turn.
+        Iterator over the decisions that the installed rule would make in the current turn. In a
+        copy of the run, the rule is asked anew unless the iterator is a `rmfs.control.turns.Turn`.
     advised
         The installed rule's advice on the pending question, in a tuple; None if it has not been
         asked for.
@@ -127,8 +129,8 @@ class Outside:
     advised: Any = None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Omit the advising rule, whose generator cannot be copied."""
-        return self.__dict__ | {"advisor": None, "advised": None}
+        """Omit the advisor if it is a generator, which cannot be copied."""
+        return self.__dict__ | {"advisor": self.advisor if isinstance(self.advisor, Turn) else None}
 
     def knows(self, question: Question) -> bool:
         """Whether the next answer in `given` is the answer to this question of TA."""

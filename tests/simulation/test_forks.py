@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import random
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from test_stepping import simulation, told
+from test_stepping import follow, simulation, take, told
 
 import rmfs
 from rmfs.errors import InputError
@@ -100,6 +101,67 @@ def test_a_decision_that_waits_is_copied(problem: str) -> None:
             else:
                 decision.decline()
     assert told(fork) == told(run)
+
+
+FOLLOWED: dict[str, tuple[str, dict[str, Any]]] = {
+    **{
+        f"rps {name}": ("rps", {"controllers__rps": {"name": name, "buffer_threshold": 0.5}})
+        for name in ("emptiest", "correlative", "random")
+    },
+    "rps turnover": ("rps", {"controllers__rps": "turnover"}),
+    "rps reactive": ("rps", {"controllers__rps": "reactive", "controllers__roa": "random"}),
+    "roa": ("roa", {}),
+    "roa one by one": ("roa", {"controllers__roa": {"name": "same-pod", "break_batches": True}}),
+    "roa random": ("roa", {"controllers": "random"}),
+    "poa": ("poa", {"controllers": "random"}),
+    "poa queue": ("poa", {"controllers__poa": "queue"}),
+    "psa": ("psa", {"controllers__psa": "random"}),
+    "sa": ("sa", {"controllers__sa": {"name": "backlog-threshold", "pause_s": 60.0}}),
+    "ta": ("ta", {"controllers": "random"}),
+    "ta brute-force": (
+        "ta",
+        {
+            "controllers__ta": "brute-force",
+            "controllers__pps": "dummy",
+            "controllers__psa": "dummy",
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FOLLOWED)
+def test_where_the_advice_of_a_rule_is_followed(name: str) -> None:
+    """At random moments: in the middle of a turn, before and after the advice is given."""
+    problem, given = FOLLOWED[name]
+    moments = 2 * follow(simulation(problem, **given))
+    chosen = set(random.Random(name).sample(range(moments), min(moments, 16)))
+    run, moment, forks = simulation(problem, **given), 0, []
+    while (decision := run.step()) is not None:
+        if moment in chosen:
+            forks.append(run.fork())
+        decision.advice()
+        if moment + 1 in chosen:
+            forks.append(run.fork())
+        take(decision)
+        moment += 2
+    assert len(forks) == len(chosen)
+    for fork in forks:
+        follow(fork)
+        assert told(fork) == told(run)
+
+
+def test_a_saved_turn_goes_on(tmp_path: Path) -> None:
+    """The advisor of RPS is in the file."""
+    run, saved = simulation("rps"), []
+    while (decision := run.step()) is not None:
+        take(decision)
+        if run.decision is not None and len(saved) < 5:
+            saved.append(tmp_path / f"{len(saved)}.run")
+            run.save(saved[-1])
+    for path in saved:
+        loaded = rmfs.Simulation.load(path)
+        follow(loaded)
+        assert told(loaded) == told(run)
 
 
 def test_neither_changes_the_other() -> None:

@@ -22,6 +22,7 @@ from rmfs.control.poa.criteria import (
     best,
 )
 from rmfs.control.problems import Trigger
+from rmfs.control.turns import Turn
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from rmfs.control.poa.criteria import Scores
     from rmfs.control.view import View
+    from rmfs.world.orders import Order
     from rmfs.world.stations import PickStation
 
 Criteria = Annotated[tuple[OrderCriterion, ...], pydantic.Field(min_length=1)]
@@ -89,67 +91,9 @@ class Queue(PickOrderAssignment[QueueParameters]):
 
     def decide(self) -> Iterator[AssignOrder | QueueOrder]:
         """Empty the pools of inactive stations, then fill pools and slots step by step."""
-        for station in self.view.pick_stations:
-            if not station.active:
-                for order in list(station.queued.values()):
-                    yield QueueOrder(order, -1)
-        yield from self._fill_pools()
-        while True:
-            slots = sum(station.free_slots for station in self.view.pick_stations)
-            if self.parameters.fast_lane:
-                yield from self._fast_lane()
-            yield from self._take_turns()
-            if slots == sum(station.free_slots for station in self.view.pick_stations):
-                return
-            yield from self._fill_pools()
+        return Steps(self)
 
-    # --- pools ----------------------------------------------------------------------------------
-
-    def _fill_pools(self) -> Iterator[QueueOrder]:
-        """Assign orders to pools, pair by pair."""
-        orders, length = self.view.orders, self.parameters.queue_length
-        stations = [s for s in self.view.pick_stations if s.active and len(s.queued) < length]
-        if not stations:
-            return
-        servable = orders.servable(self.view.inventory.free_stock)
-        rows = (servable & (orders.queued_at < 0)).nonzero()[0]
-        if not len(rows):
-            return
-        contest = Contest.of(self.view, stations[0], rows, for_pool=True)
-        contests = [contest.at(station) for station in stations]
-        first = [self._first_scores(contest) for contest in contests]
-        while contests:
-            found = best(contests, self.parameters.queue_criteria, self.rng, first)
-            if found is None:
-                return
-            station, row = found[0].station, found[1]
-            yield QueueOrder(orders.at_row[row], station.index)
-            # rows do not change while orders only join pools
-            others = [contest.rows != row for contest in contests]
-            contests = [c.narrowed(to) for c, to in zip(contests, others, strict=True)]
-            first = [scores[to] for scores, to in zip(first, others, strict=True)]
-            place = [contest.station for contest in contests].index(station)
-            if len(station.queued) < length:
-                first[place] = self._first_scores(contests[place])
-            else:
-                del contests[place], first[place]
-
-    def _first_scores(self, contest: Contest) -> Scores:
-        return self.parameters.queue_criteria[0].score(contest, self.rng)
-
-    # --- slots ----------------------------------------------------------------------------------
-
-    def _fast_lane(self) -> Iterator[AssignOrder]:
-        """Yield orders that the pod at the head of their station completes."""
-        for station in self.view.pick_stations:
-            while station.active and station.robot >= 0 and station.free_slots > 0:
-                pod = self.view.robots[station.robot].pod
-                row = self._completed_by(pod, station)
-                if row < 0:
-                    break
-                yield AssignOrder(self.view.orders.at_row[row], station.index)
-
-    def _completed_by(self, pod: int, station: PickStation) -> int:
+    def completed_by_pod(self, pod: int, station: PickStation) -> int:
         """Choose an order that the pod completes, preferably of the pool; -1 if there is none."""
         if pod not in station.tasks:
             return -1
@@ -164,18 +108,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
                 return found[1]
         return -1
 
-    def _take_turns(self) -> Iterator[AssignOrder]:
-        """Let the stations in turn take an order of their pool, as long as possible."""
-        stations = list(self.view.pick_stations)
-        while stations:
-            for station in list(stations):
-                row = self._from_pool(station)
-                if row < 0:
-                    stations.remove(station)
-                else:
-                    yield AssignOrder(self.view.orders.at_row[row], station.index)
-
-    def _from_pool(self, station: PickStation) -> int:
+    def from_pool(self, station: PickStation) -> int:
         """Choose an order of a station's pool for a slot; -1 if there is none, or no slot."""
         if not station.active or station.free_slots <= self._kept_slots[station.index]:
             return -1
@@ -187,3 +120,125 @@ class Queue(PickOrderAssignment[QueueParameters]):
         contest = Contest.of(self.view, station, rows, for_pool=False)
         found = best([contest], self.parameters.station_criteria, self.rng)
         return -1 if found is None else found[1]
+
+
+class Pools:
+    """Fills the pools, pair of order and station by pair."""
+
+    def __init__(self, rule: Queue) -> None:
+        self._rule = rule
+        self._length = rule.parameters.queue_length
+        self._contests: list[Contest] = []
+        self._first: list[Scores] = []
+        self._chosen: tuple[PickStation, int] | None = None
+        view, orders = rule.view, rule.view.orders
+        stations = [s for s in view.pick_stations if s.active and len(s.queued) < self._length]
+        if not stations:
+            return
+        servable = orders.servable(view.inventory.free_stock)
+        rows = (servable & (orders.queued_at < 0)).nonzero()[0]
+        if len(rows):
+            contest = Contest.of(view, stations[0], rows, for_pool=True)
+            self._contests = [contest.at(station) for station in stations]
+            self._first = [self._first_scores(contest) for contest in self._contests]
+
+    def next(self) -> QueueOrder | None:
+        """Choose the next order to join a pool; None if there is none."""
+        if self._chosen is not None:
+            self._go_on(*self._chosen)
+        found = None
+        if self._contests:
+            rule = self._rule
+            found = best(self._contests, rule.parameters.queue_criteria, rule.rng, self._first)
+        if found is None:
+            self._contests, self._chosen = [], None
+            return None
+        self._chosen = station, row = found[0].station, found[1]
+        return QueueOrder(self._rule.view.orders.at_row[row], station.index)
+
+    def _go_on(self, station: PickStation, row: int) -> None:
+        """Take the order that has joined a pool out of the contests."""
+        # rows do not change while orders only join pools
+        others = [contest.rows != row for contest in self._contests]
+        self._contests = [c.narrowed(to) for c, to in zip(self._contests, others, strict=True)]
+        self._first = [scores[to] for scores, to in zip(self._first, others, strict=True)]
+        place = [contest.station for contest in self._contests].index(station)
+        if len(station.queued) < self._length:
+            self._first[place] = self._first_scores(self._contests[place])
+        else:
+            del self._contests[place], self._first[place]
+
+    def _first_scores(self, contest: Contest) -> Scores:
+        rule = self._rule
+        return rule.parameters.queue_criteria[0].score(contest, rule.rng)
+
+
+class Slots:
+    """Fills slots, first by the fast lane, then from the pools."""
+
+    def __init__(self, rule: Queue) -> None:
+        self._rule = rule
+        stations = list(rule.view.pick_stations)
+        self._lane = list(stations) if rule.parameters.fast_lane else []
+        self._turns = stations
+        self._round = iter(list(stations))
+
+    def next(self) -> AssignOrder | None:
+        """Choose the next order that gets a slot; None if there is none."""
+        return self._by_lane() or self._in_turn()
+
+    def _by_lane(self) -> AssignOrder | None:
+        """Choose an order that the pod at the head of its station completes."""
+        view = self._rule.view
+        while self._lane:
+            station = self._lane[0]
+            if station.active and station.robot >= 0 and station.free_slots > 0:
+                pod = view.robots[station.robot].pod
+                row = self._rule.completed_by_pod(pod, station)
+                if row >= 0:
+                    return AssignOrder(view.orders.at_row[row], station.index)
+            del self._lane[0]
+        return None
+
+    def _in_turn(self) -> AssignOrder | None:
+        """Let the next station take an order of its pool; None if no station can."""
+        while self._turns:
+            for station in self._round:
+                row = self._rule.from_pool(station)
+                if row >= 0:
+                    return AssignOrder(self._rule.view.orders.at_row[row], station.index)
+                self._turns.remove(station)
+            self._round = iter(list(self._turns))
+        return None
+
+
+class Steps(Turn[AssignOrder | QueueOrder]):
+    """The decisions of one call of the rule: pools and slots are filled until nothing changes."""
+
+    def __init__(self, rule: Queue) -> None:
+        self._rule = rule
+        self._leaving: Iterator[Order] | None = None
+        self._pools: Pools | None = None
+        self._slots: Slots | None = None
+        self._free = 0
+
+    def __next__(self) -> AssignOrder | QueueOrder:
+        stations = self._rule.view.pick_stations
+        if self._leaving is None:
+            off = [station for station in stations if not station.active]
+            self._leaving = iter([order for station in off for order in station.queued.values()])
+        for order in self._leaving:
+            return QueueOrder(order, -1)
+        while True:
+            if self._slots is None:
+                self._pools = self._pools or Pools(self._rule)
+                joining = self._pools.next()
+                if joining is not None:
+                    return joining
+                self._slots, self._free = Slots(self._rule), sum(s.free_slots for s in stations)
+            assigned = self._slots.next()
+            if assigned is not None:
+                return assigned
+            if self._free == sum(station.free_slots for station in stations):
+                raise StopIteration
+            self._pools = self._slots = None

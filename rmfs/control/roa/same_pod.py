@@ -10,11 +10,13 @@ from rmfs.control.base import Parameters
 from rmfs.control.decisions import SendBundle
 from rmfs.control.problems import Problem, Trigger
 from rmfs.control.roa import ReplenishmentOrderAssignment
+from rmfs.control.turns import Turn
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
 
     from rmfs.control.view import View
+    from rmfs.world.orders import Bundle
     from rmfs.world.stations import ReplenishmentStation
 
 StationRule = Literal["nearest", "emptiest", "fullest", "least-busy", "most-busy", "random"]
@@ -75,22 +77,7 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
 
     def decide(self) -> Iterator[SendBundle]:
         """Yield assignments batch by batch or, with `break_batches`, bundle by bundle."""
-        return self._bundles() if self.parameters.break_batches else self._batches()
-
-    def _batches(self) -> Iterator[SendBundle]:
-        for pod in list(self.view.bundles.released):
-            if not self._on(pod):
-                continue  # there is no queue in which the batch could be the first
-            batch = list(self.view.bundles.released[pod])
-            space = sum(bundle.space for bundle in batch)
-            station = self._by_rule(pod, self._with_room(pod, space, split=True))
-            if station is None:
-                if self.parameters.first_come_first_served:
-                    return
-                continue
-            for bundle in batch:
-                if bundle.space <= station.free_space:
-                    yield SendBundle(bundle, station.index)
+        return self._bundles() if self.parameters.break_batches else Batches(self)
 
     def _bundles(self) -> Iterator[SendBundle]:
         for pod in list(self.view.bundles.released):
@@ -115,6 +102,15 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
             if space <= station.free_space
             or (split and station.used == 0 and space > station.capacity)
         ]
+
+    def can_go_on(self, pod: int) -> bool:
+        """Return whether a station is on to which the pod may be brought."""
+        return bool(self._on(pod))
+
+    def for_batch(self, pod: int, batch: Sequence[Bundle]) -> ReplenishmentStation | None:
+        """Choose the station of a batch of bundles for a pod; None if no station has room."""
+        space = sum(bundle.space for bundle in batch)
+        return self._by_rule(pod, self._with_room(pod, space, split=True))
 
     def _on(self, pod: int) -> list[ReplenishmentStation]:
         """Return the stations considered for a pod that are on, with room or without."""
@@ -144,3 +140,32 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
             return None
         waypoints = np.array([station.waypoint for station in stations])
         return stations[int(self.view.travel.metres(waypoint, waypoints).argmin())]
+
+
+class Batches(Turn[SendBundle]):
+    """The decisions of one call of the rule, batch by batch."""
+
+    def __init__(self, rule: SamePod) -> None:
+        self._rule = rule
+        self._pods: Iterator[int] | None = None
+        self._batch: Iterator[Bundle] = iter(())
+        self._station: ReplenishmentStation | None = None
+
+    def __next__(self) -> SendBundle:
+        rule, released = self._rule, self._rule.view.bundles.released
+        if self._pods is None:
+            self._pods = iter(list(released))
+        while True:
+            for bundle in self._batch:
+                assert self._station is not None
+                if bundle.space <= self._station.free_space:
+                    return SendBundle(bundle, self._station.index)
+            pod = next(self._pods)
+            if not rule.can_go_on(pod):
+                continue  # there is no queue in which the batch could be the first
+            batch = list(released[pod])
+            self._station = rule.for_batch(pod, batch)
+            if self._station is not None:
+                self._batch = iter(batch)
+            elif rule.parameters.first_come_first_served:
+                self._pods = iter(())

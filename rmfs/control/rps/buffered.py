@@ -12,6 +12,7 @@ from rmfs.control.base import Parameters
 from rmfs.control.decisions import PromiseBundle, ReleasePod
 from rmfs.control.problems import Trigger
 from rmfs.control.rps import ReplenishmentPodSelection
+from rmfs.control.turns import Turn
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -81,26 +82,8 @@ class Buffered(ReplenishmentPodSelection[P]):
         return int(pods[scores[pods].argmin()]) if len(pods) else -1
 
     def decide(self) -> Iterator[PromiseBundle | ReleasePod]:
-        """Yield a promise for each bundle that fits into a pod, and the releases that are due."""
-        inventory = self.view.inventory
-        load, capacity = inventory.load.item, inventory.capacity.item
-        if self._is_new:
-            self._is_new = False
-            yield from self._full()
-        # bundles that no pod can take are passed over without a search for each
-        room = inf
-        for bundle in self.candidates():
-            if bundle.space > room:
-                continue
-            pod = self.choose(bundle)
-            if pod < 0:
-                room = float((inventory.capacity - inventory.load).max())
-                continue
-            yield PromiseBundle(bundle, pod)
-            # a quotient: the product of 0.55 and 100, say, is above 55
-            if load(pod) / capacity(pod) >= self.threshold(pod):
-                yield ReleasePod(pod)
-        yield from self._due()
+        """Return a promise for each bundle that fits into a pod, and the releases that are due."""
+        return Promises(self)
 
     def next_event_s(self) -> float:
         """Return the simulated time in s at which the next time-out expires, or inf."""
@@ -113,20 +96,79 @@ class Buffered(ReplenishmentPodSelection[P]):
             earliest_s = min(earliest_s, time_s + self.timeout_s(pod))
         return earliest_s
 
-    def _full(self) -> Iterator[ReleasePod]:
-        """Release the bundles of pods at the threshold: another rule may have held them back."""
-        inventory = self.view.inventory
-        for pod in list(self.view.bundles.unreleased_since_s):
-            if inventory.load[pod] / inventory.capacity[pod] >= self.threshold(pod):
-                yield ReleasePod(pod)
+    def begins(self) -> bool:
+        """Return whether the rule decides for the first time."""
+        is_new, self._is_new = self._is_new, False
+        return is_new
 
-    def _due(self) -> Iterator[ReleasePod]:
-        """Release the bundles of pods whose time-out has expired."""
-        for pod, time_s in list(self.view.bundles.unreleased_since_s.items()):
-            if time_s + self.shortest_timeout_s > self.view.now_s:
-                return
-            if time_s + self.timeout_s(pod) <= self.view.now_s:
-                yield ReleasePod(pod)
+    def is_full(self, pod: int) -> bool:
+        """Return whether a pod has reached the threshold at which its bundles are released."""
+        inventory = self.view.inventory
+        # a quotient: the product of 0.55 and 100, say, is above 55
+        return inventory.load.item(pod) / inventory.capacity.item(pod) >= self.threshold(pod)
+
+
+class Promises(Turn[PromiseBundle | ReleasePod]):
+    """The decisions of one call of a rule.
+
+    Releases of pods that another rule has filled come first, if the rule decides for the first
+    time. They are followed by the promises, each with the release of the pod that it fills, and by
+    the releases of pods whose time-out has expired.
+    """
+
+    def __init__(self, rule: Buffered[Any]) -> None:
+        self._rule = rule
+        self._pods: Iterator[int] | None = None
+        self._bundles: Iterator[Bundle] | None = None
+        self._due: Iterator[tuple[int, float]] | None = None
+        self._promised = -1
+        self._room = inf
+
+    def __next__(self) -> PromiseBundle | ReleasePod:
+        decision = self._release_full() or self._promise() or self._release_due()
+        if decision is None:
+            raise StopIteration
+        return decision
+
+    def _release_full(self) -> ReleasePod | None:
+        """Release the bundles of the next pod that has reached its threshold."""
+        rule = self._rule
+        if self._pods is None:
+            self._pods = iter(list(rule.view.bundles.unreleased_since_s) if rule.begins() else [])
+        for pod in self._pods:
+            if rule.is_full(pod):
+                return ReleasePod(pod)
+        pod, self._promised = self._promised, -1
+        return ReleasePod(pod) if pod >= 0 and rule.is_full(pod) else None
+
+    def _promise(self) -> PromiseBundle | None:
+        """Promise the next bundle for which there is a pod."""
+        rule, inventory = self._rule, self._rule.view.inventory
+        if self._bundles is None:
+            self._bundles = iter(rule.candidates())
+        for bundle in self._bundles:
+            # bundles that no pod can take are passed over without a search for each
+            if bundle.space > self._room:
+                continue
+            pod = rule.choose(bundle)
+            if pod >= 0:
+                self._promised = pod
+                return PromiseBundle(bundle, pod)
+            self._room = float((inventory.capacity - inventory.load).max())
+        return None
+
+    def _release_due(self) -> ReleasePod | None:
+        """Release the bundles of the next pod whose time-out has expired."""
+        rule = self._rule
+        if self._due is None:
+            self._due = iter(list(rule.view.bundles.unreleased_since_s.items()))
+        for pod, time_s in self._due:
+            if time_s + rule.shortest_timeout_s > rule.view.now_s:
+                self._due = iter(())
+                return None
+            if time_s + rule.timeout_s(pod) <= rule.view.now_s:
+                return ReleasePod(pod)
+        return None
 
 
 class BufferParameters(Parameters):

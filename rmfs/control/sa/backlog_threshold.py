@@ -81,6 +81,7 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
     ) -> None:
         super().__init__(parameters, view, rng)
         self._started = False
+        self._first: list[int] = []
         self._from_s = {True: 0.0, False: 0.0}
         self._order = {pick: activation_order(view, pick) for pick in (True, False)}
 
@@ -89,9 +90,11 @@ class BacklogThreshold(StationActivation[BacklogThresholdParameters]):
         if not self._started:
             self._started = True
             self._from_s = dict.fromkeys(self._from_s, self.view.now_s + self.parameters.pause_s)
-            for station in self.view.stations:
-                if not station.active:
-                    yield SwitchStation(station.index, active=True)
+            self._first = [station.index for station in self.view.stations]
+        while self._first:  # a copy of the run in the middle of a turn goes on from here
+            station = self._first.pop(0)
+            if not self.view.stations[station].active:
+                yield SwitchStation(station, active=True)
         for pick, from_s in self._from_s.items():
             if self.view.now_s < from_s:
                 continue

@@ -13,6 +13,7 @@ from rmfs.control.decisions import Park, Prepare, TaskDecision
 from rmfs.control.problems import Problem
 from rmfs.control.ta.solo import Solo, SoloParameters
 from rmfs.control.ta.stations import bring, keeper_of
+from rmfs.world.tasks import ParkTask
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -74,6 +75,21 @@ class BruteForce(Solo[BruteForceParameters]):
         super().__init__(parameters, view, rng)
         parameters.prepare(view)
         self._picks = True
+        self._parked: tuple[float, Park, Prepare] | None = None
+
+    def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
+        """Yield a task for every robot that needs one, and work for robots at rest.
+
+        If the rule is asked anew after it has parked a robot's pod (in a copy of the run), the task
+        to be done afterwards comes first.
+        """
+        if self._parked is not None:
+            at_s, (robot, place), prepare = self._parked
+            self._parked = None
+            is_parking = isinstance(robot.task, ParkTask) and robot.task.place == place
+            if is_parking and at_s == self.view.now_s:
+                yield prepare
+        yield from super().decide(consult)
 
     def task_for(self, robot: Robot, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Yield the best task or, if there is no work, the task of parking or resting.
@@ -95,8 +111,11 @@ class BruteForce(Solo[BruteForceParameters]):
             place = view.storage.place_of[job.pod]
             on = view.travel.metres(place, view.storage.places) / speed
             for park in self._park(robot, on):
+                prepare = Prepare(robot, (bring(view, robot, job.pod, job.station),))
+                self._parked = view.now_s, park, prepare
                 yield park
-                yield Prepare(robot, (bring(view, robot, job.pod, job.station),))
+                self._parked = None
+                yield prepare
 
     def work_for(self, robot: Robot, consult: Consult) -> TaskDecision | None:
         """Find the best task for a robot without a pod; None if there is no work."""
