@@ -1,4 +1,4 @@
-"""Timing of an emulated room: synchronised with the server, or by the wall clock."""
+"""Timing of a room of emulated robots: synchronised with the server, or by the wall clock."""
 
 from __future__ import annotations
 
