@@ -8,9 +8,8 @@
         link.send({"type": "tag", ...})
         link.flush(now_us)
 
-The only operations that block are `Link.wait` and the opening of a connection. At the beginning of
-a session, each side proves that it knows the secret. Both sides then derive the same key from the
-secret and a nonce of each side:
+Only `Link.wait` and the opening of a connection block. At the beginning of a session, each side
+proves that it knows the secret. Both sides then derive a key from the secret and both nonces:
 
     server -> robot   welcome: version, nonce
     robot -> server   hello: version, name of the robot, nonce (valid for this welcome only)

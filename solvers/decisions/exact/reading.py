@@ -70,9 +70,9 @@ def answer_of(decision: Decision, stated: Exact, path: Path, by: dict[str, objec
     Parameters
     ----------
     decision
-        The question.
+        The recorded decision that is to be answered.
     stated
-        Its program.
+        The mathematical program of this decision.
     path
         The solution file.
     by

@@ -122,7 +122,7 @@ class Part:
         return np.flatnonzero(np.isin(self.full.line_order, self.orders))
 
     def start(self) -> Assignment:
-        """Return the decision `values`, restricted to the part."""
+        """Return the part's share of the decision that is in `self.values`."""
         values = self.values
         robot_of = self._numbering(self.robots, self.full.robots)
         station_of = self._numbering(self.stations, self.full.stations)
