@@ -7,8 +7,8 @@ solver's protocol buffer, row by row from the compressed matrix, in a few micros
 CP-SAT needs integer costs. Fractional costs are therefore rounded *down* to multiples of a unit.
 The unit is 1/1024; if every cost is below 1, it is 1/1024 of the largest cost, rounded to a power
 of two so that scaling is exact. As all columns are non-negative, the minimum with rounded costs
-never exceeds the true minimum, so the solver's bound remains valid. CP-SAT reports bounds as floats,
-which are inexact above 2^53; there, the bound is lowered accordingly.
+never exceeds the true minimum, so the solver's bound remains valid. CP-SAT reports bounds as
+floats, which are inexact above 2^53; there, the bound is lowered accordingly.
 """
 
 from __future__ import annotations
