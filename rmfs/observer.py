@@ -73,7 +73,7 @@ class Troubles(Protocol):
     """The part of a run that records disturbances."""
 
     def within(self, start_s: float, end_s: float) -> tuple[int, float]:
-        """Return the number of disturbances that overlap a period, and their total time in it (s).
+        """Return how many disturbances overlap a period, and their total time in this period (s).
 
         The times of simultaneous disturbances are added up.
         """
@@ -144,8 +144,8 @@ class Observer:
     def pool_changed(self, station: int) -> None:
         """Report that other pods than before may be useful for the pool of a pick station.
 
-        The station has a free slot again, or only some of the open units of an order in the pool
-        were bound to a pod.
+        The reason is that the station has a free slot again, or that only some of the open units of
+        an order in the pool were bound to a pod.
         """
 
     def picks_changed(self, time_s: float, robot: int) -> None:

@@ -1,4 +1,4 @@
-"""The response of a calibration: simulates and stores runs, and returns a footprint column."""
+"""Simulates and stores the runs of a calibration, and returns a column of their footprints."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def lines(
     column
         The measure.
     by
-        Column with one line per value.
+        Column; one line is drawn for each of its values.
     """
     for number, level in enumerate(frame[by].unique()):
         runs = frame[frame[by] == level]

@@ -1,8 +1,8 @@
 """The gain of decisions that consider where robots have recently been delayed.
 
-In the design `congestion`, PSA and TA (by linear assignment) decide by travel times that either
+In the design `congestion`, PSA, and TA by linear assignment, decide by travel times that either
 include or ignore the delay expected from congestion. Two sites with quick stations are simulated,
-each with few robots and with so many that the aisles are full. The study publishes the changes of
+each once with few robots and once with so many that the aisles are full. The study publishes the changes of
 units per hour, of the delay per trip and of the distance per unit, paired by seed. It also
 publishes the share of trip time that is delay, which is an upper bound on what such decisions can
 save, and the share of time for which robots have no task.
@@ -44,7 +44,7 @@ def levels(frame: pd.DataFrame) -> Table:
     Parameters
     ----------
     frame
-        Runs with `site`, `knows`, `replication` and the columns of the study.
+        One row per run: `site`, `knows`, `replication` and the columns in `COLUMNS`.
     """
     rows: Rows = {}
     for site, runs in frame.groupby(SITE, sort=False):

@@ -62,7 +62,7 @@ def needed(frame: pd.DataFrame, groups: Sequence[str], enough: float = ENOUGH) -
     groups
         Names of columns; runs with the same values in all these columns form a group.
     enough
-        Share of the stations' capacity to be reached.
+        Share of the stations' capacity that the fleet must reach.
 
     Returns
     -------

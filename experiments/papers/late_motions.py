@@ -49,7 +49,7 @@ def losses(frame: pd.DataFrame) -> Table:
     Parameters
     ----------
     frame
-        Runs with `layout.robots`, `late`, `replication` and the columns of the study.
+        One row per run: `layout.robots`, `late`, `replication` and the columns in `COLUMNS`.
     """
     rows: Rows = {}
     for robots in frame[ROBOTS].unique():

@@ -120,7 +120,7 @@ def asked_otherwise(decision: Decision, changes: Mapping[str, Any]) -> Decision:
     Parameters
     ----------
     decision
-        The question.
+        The question whose settings are to be changed.
     changes
         New values of the settings to change, by key.
     """

@@ -58,7 +58,7 @@ def losses(frame: pd.DataFrame) -> Table:
     Parameters
     ----------
     frame
-        Runs with `fleet`, `planning`, `replication` and the columns of the study.
+        One row per run: `fleet`, `planning`, `replication` and the columns in `COLUMNS`.
     """
     rows: Rows = {}
     fleets = list(frame[FLEET].unique())

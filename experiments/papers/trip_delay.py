@@ -30,7 +30,7 @@ class TripDelay(Measure):
     )
 
     def footprint(self, run: EndedRun) -> dict[str, Any]:
-        """Return the share, from the table of trips."""
+        """Return the share of trip time that is delay, from the table of trips."""
         trips = run.tables["trips"]
         trips = trips[trips["kind"] != "to_station"]
         lasted_s = (trips["end_s"] - trips["start_s"]).sum()

@@ -25,7 +25,7 @@ class Job:
     measures
         References to user-defined measures (see `rmfs.references`).
     decisions
-        Folder in which the questions to optimisers are recorded; empty if they are not recorded.
+        Folder in which the questions to optimisers are recorded; "" if they are not recorded.
     """
 
     design: str

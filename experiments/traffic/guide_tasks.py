@@ -42,7 +42,7 @@ class Task(ABC):
     layout
         Name of a shipped layout, or a file.
     seeds
-        Seeds of the runs with which weights are evaluated.
+        Seeds of the runs with which guidance is evaluated.
     set
         Further parameters by dotted key, as for `rmfs.simulate`.
 
@@ -68,7 +68,7 @@ class Task(ABC):
         return layouts.load(self.layout, own)
 
     def other_seeds(self) -> list[int]:
-        """Return 2 n new seeds for the n `seeds`: the integers after the largest of these."""
+        """Return twice as many new seeds as `seeds` has: the integers after its largest."""
         return [max(self.seeds) + 1 + number for number in range(2 * len(self.seeds))]
 
     @abstractmethod

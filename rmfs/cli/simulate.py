@@ -260,7 +260,8 @@ def default_name(
         unsuitable characters, they are replaced; if it is longer than `LONGEST` characters, it is
         cut. In both cases, a hash of the full text is added.
     pacing
-        The pacing as specified by the user; part of the changes unless it is `instant`.
+        The pacing as specified by the user. Unless it is `instant`, the name contains it after the
+        changes, as another change.
     """
     told = [text.replace(".name=", "=") for text in changes]
     told += [] if pacing == "instant" else [f"pacing={pacing}"]

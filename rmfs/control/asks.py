@@ -63,7 +63,7 @@ class Answer:
         If the solution is neither a mapping nor None, or a cost, time or size is not a number.
     ValueError
         If `work`, `built`, `wall_s` or `build_s` is negative or not finite, if the objective of a
-        solution is nan, or if the bound exceeds it by more than `BOUND_TOLERANCE`.
+        solution is nan, or if the bound exceeds the objective by more than `BOUND_TOLERANCE`.
     """
 
     solution: Mapping[str, Plain] | None

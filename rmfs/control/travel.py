@@ -114,7 +114,7 @@ class Travel:
         self._other_tier_m = 1 + max(tier.length_m + tier.width_m for tier in layout.tiers)
 
     def to(self, waypoint: int, *, loaded: bool) -> NDArray[np.float64]:
-        """Return unhindered times to this waypoint from all, in s (inf: no path), shape (N,).
+        """Return unhindered times from all waypoints to this one, in s (inf: no path), shape (N,).
 
         `loaded` states whether the robot carries a pod.
         """

@@ -12,7 +12,8 @@ class Turn(Iterator[D]):
     """The decisions of one call of `decide`, as an iterator that can be copied.
 
     Usually, `decide` is a generator. A program that follows the advice of a rule may copy the run
-    in the middle of a turn; since generators cannot be copied, the rule is asked anew in the copy.
-    A rule that would then decide otherwise, because its generator remembers something that is not
-    in an attribute, returns an object of a class derived from this one.
+    while a call of `decide` is in progress. As a generator cannot be copied, `decide` is called
+    again in the copy. If a generator would remember something that is not in an attribute of the
+    rule, this new call might decide differently; such a rule returns an instance of a subclass of
+    `Turn` instead.
     """

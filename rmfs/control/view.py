@@ -186,7 +186,7 @@ class View:
         return self.all_stations[station].has_open_work
 
     def robot_target(self, robot: Robot) -> int:
-        """Return the waypoint of the pod that a robot fetches; if none, `robot.waypoint`."""
+        """Return the waypoint of the pod that a robot fetches; without one, `robot.waypoint`."""
         task = robot.task
         if task is None or task.pod < 0 or robot.pod >= 0:
             return robot.waypoint

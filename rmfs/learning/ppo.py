@@ -53,7 +53,7 @@ def train_network(
         Number of units in the hidden layer of each network. A network that already has layers
         keeps these.
     candidates
-        Maximum number of candidates that are scored for a question.
+        Maximum number of candidates (such as pods) that are scored for a decision.
     gamma
         Discount factor per decision.
     learning_rate

@@ -27,7 +27,7 @@ NEVER = -1e4
 
 
 class KindScorer(nn.Module):
-    """Scores candidates of one kind of question, by the formula of `rmfs.control.network.Scorer`.
+    """Scores candidates in questions of one kind, by the formula of `rmfs.control.network.Scorer`.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ class Scores(nn.Module):
     Parameters
     ----------
     observing
-        Defines the observations.
+        Definition of the observations: kinds of question, features, and number k of candidates.
     first
         Networks from which training starts, by kind of question.
     hidden
@@ -152,7 +152,7 @@ class Scores(nn.Module):
         return self.forward_actor(seen), self.forward_critic(seen)
 
     def forward_actor(self, seen: torch.Tensor) -> torch.Tensor:
-        """Return the scores of all actions for B observations, shape (B, k + 1)."""
+        """Return the scores of the k + 1 actions for B observations, shape (B, k + 1)."""
         whole, asked, candidates = self._parts(seen)
         which = asked.argmax(dim=1)
         found = torch.empty(len(seen), self.k + 1)
@@ -209,7 +209,7 @@ class ScoringPolicy(MaskableActorCriticPolicy):
 
 
 def scores(policy: ScoringPolicy, seen: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
-    """Return the scores of all actions for B flat observations, shape (B, k + 1)."""
+    """Return the scores of the k + 1 actions for B flat observations, shape (B, k + 1)."""
     with torch.no_grad():
         found: np.ndarray[Any, Any] = policy.mlp_extractor.forward_actor(
             torch.as_tensor(seen, dtype=torch.float32)

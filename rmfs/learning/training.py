@@ -89,7 +89,8 @@ class Task:
     def start(self) -> NDArray[np.float64]:
         """Return the default weights of the linear rules as one vector.
 
-        The weights for each kind of question are scaled so that the largest absolute value is 1.
+        The weights for each kind of question (see `rmfs.control.questions`) are scaled so that the
+        largest absolute value is 1.
         """
         found = [list(default_weights(kind).values()) for kind in self._kinds()]
         return np.concatenate([np.array(one) / max(map(abs, one)) for one in found])
@@ -210,8 +211,8 @@ def train(
         Number of generations, and number of vectors of weights per generation. Each vector is
         simulated with all seeds of the task.
     spread
-        Initial standard deviation of the weights. For each kind of question, the largest absolute
-        value of the initial weights is 1.
+        Initial standard deviation of the weights. For each kind of question (see
+        `rmfs.control.questions`), the largest absolute value of the initial weights is 1.
     seed
         Seed of the evolution strategy.
     jobs

@@ -29,8 +29,8 @@ class DecisionVectorEnv(VectorEnv[Any, Any, Any]):
     computing time up to the next decision varies greatly between environments; with 8 or more
     environments per process, these differences average out.
 
-    If an episode ends in a step, the next step ignores the action for this environment, starts its
-    next episode and returns reward 0 (Gymnasium's mode `NEXT_STEP`).
+    If an environment's episode ends in a step, the next step ignores the action for the
+    environment, starts its next episode and returns reward 0 (Gymnasium's mode `NEXT_STEP`).
 
     `info` contains the arrays `elapsed_s`, `now_s`, `invalid` and `kind`, each of shape (N,), and
     `action_mask`, shape (N, actions). The elements of `kind` are kinds of question (see the

@@ -135,7 +135,7 @@ def source(part: str, given: str) -> dict[str, Any]:
     Parameters
     ----------
     part
-        A key of `KINDS`.
+        Kind of the input: `layout`, `scenario` or `controllers`.
     given
         Name or path of the input. If no such file is found, `given` is returned as the name, and
         file and SHA-256 are None.

@@ -103,7 +103,7 @@ class Due:
         self.bits |= 1 << ANSWERS
 
     def place_left(self) -> None:
-        """Record that a robot has left a storage location; other robots may be waiting for it."""
+        """Record that a robot has left a storage location, for which others may be waiting."""
         if self._world.asking:
             self.bits |= 1 << TASKS
 

@@ -95,7 +95,7 @@ class Triggers(Observer):
         self._signal(Trigger.ROBOT_FREE, robot)
 
     def place_left(self, robot: int) -> None:
-        """Signal that a robot has left a storage location; other robots may be waiting for it."""
+        """Signal that a robot has left a storage location, for which others may be waiting."""
         self._place_left()
 
     def pod_lifted(self, time_s: float, pod: int, robot: int, waypoint: int) -> None:

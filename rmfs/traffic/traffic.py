@@ -213,7 +213,7 @@ class Traffic(Readings):
         return self._core.clearance(robot)
 
     def regroup(self, rests: Sequence[tuple[int, float, int] | None]) -> None:
-        """Discard all plans, set robots to given positions, and plan their programs anew.
+        """Discard all plans, set robots to given positions, and replan their programs (`command`).
 
         Parameters
         ----------

@@ -33,7 +33,7 @@ class Command(NamedTuple):
     at_us
         Time, in microseconds, at which the command is to be given.
     program
-        Steps, as for `Traffic.command`.
+        Steps that the robot is to carry out, in the form that `Traffic.command` expects.
     """
 
     at_us: int

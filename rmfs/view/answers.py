@@ -26,7 +26,7 @@ def replay_server(
 
     If `starter` is given, the page has a form that starts runs; if there are no recorded runs, the
     page has only that form. A run folder is read again for each request, so that a reloaded page
-    shows the current content of the folder. If the run cannot be read, the answer states why.
+    shows the current content of the folder. If a run cannot be read, the response states why.
 
     Raises
     ------

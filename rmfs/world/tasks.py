@@ -167,7 +167,7 @@ class PickTask(StationTask):
 
     @property
     def can_pick(self) -> bool:
-        """Whether at least one of the units is for an order that has a slot at the station."""
+        """Whether a unit still to be picked is for an order that has a slot at the station."""
         return any(pick.line.order.station >= 0 for pick in self.picks)
 
 
@@ -252,7 +252,7 @@ class RestTask(Task):
         return world.start_rest(world.robots[self.robot], self.place)
 
     def is_possible(self, world: Keeps, serves: Serves) -> bool:
-        """Whether the robot carries nothing, and no other robot keeps the place."""
+        """Whether the robot carries nothing, and no other robot has reserved the place."""
         empty = world.robots[self.robot].pod < 0
         return empty and world.storage.kept_by[self.place] in (-1, self.robot)
 

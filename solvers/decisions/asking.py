@@ -88,7 +88,7 @@ def asked_again(decision: Decision, where: str = "") -> Found:
 
 
 def found_of(family: str, given: Answer) -> Found:
-    """Convert an optimiser's answer to a question of the given family to a `Found`."""
+    """Make a `Found` from an optimiser's answer to a question of the given family."""
     by = {"backend": given.backend, "status": given.status, "work": given.work}
     by |= {"wall_s": given.wall_s, "build_s": given.build_s, "built": given.built}
     values = None if given.found is None else plain_values(family, given.found)

@@ -49,7 +49,7 @@ def bounds(
     Parameters
     ----------
     decision
-        The question.
+        The question whose answers are bounded.
     work
         Limit of the exact search, in the unit in which its method counts work.
     where

@@ -63,7 +63,7 @@ def points(
     Parameters
     ----------
     decision
-        The question.
+        The question to be solved.
     method
         Name of the method.
     most

@@ -75,7 +75,7 @@ def solve(
     Parameters
     ----------
     decision
-        The question.
+        The question to be solved.
     method
         Name of a method of the family, or `asked`: solve the question as in the run, regardless of
         `guard_s`. Default: `asked` if a controller of rmfs asked the question, and no `work`,

@@ -28,7 +28,7 @@ class Names:
         self.means = [""] * columns
 
     def block(self, name: str, columns: ArrayLike, means: str = "", **indices: ArrayLike) -> None:
-        """Give the columns of a block names that contain their indices, such as `call_p3_s1`.
+        """Name the columns of a block by the block and their indices, such as `call_p3_s1`.
 
         Parameters
         ----------

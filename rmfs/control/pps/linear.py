@@ -47,8 +47,9 @@ class LinearParameters(LateBinding):
 class Linear(PodSelection[LinearParameters]):
     """Chooses the pod, or the next station, with the greatest weighted sum of features.
 
-    Ties go to the pod or station with the lowest number. Regardless of `consider`, pods are chosen
-    for orders assigned to the station, and for orders of its pool that a single pod can complete.
+    Ties go to the pod or station with the lowest number. Regardless of the parameter `consider`,
+    pods are chosen for orders assigned to the station, and for orders of its pool that a single pod
+    can complete.
     """
 
     parameters_model = LinearParameters

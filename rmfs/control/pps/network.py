@@ -48,8 +48,9 @@ class NetworkRule(PodSelection[NetworkParameters]):
     """Chooses the pod, or the next station, that a neural network scores highest.
 
     The networks for pods can also score the option to choose no pod (declining). If this score is
-    higher than that of every pod, no pod is chosen. Regardless of `consider`, pods are chosen for
-    orders assigned to the station, and for orders of its pool that a single pod can complete.
+    higher than that of every pod, no pod is chosen. Regardless of the parameter `consider`, pods
+    are chosen for orders assigned to the station, and for orders of its pool that a single pod can
+    complete.
     """
 
     parameters_model = NetworkParameters

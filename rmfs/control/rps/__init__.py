@@ -33,6 +33,6 @@ class ReplenishmentPodSelection(Controller[P]):
     def decide(self) -> Iterator[PromiseBundle | ReleasePod | SendBundle | Ask[Any] | By[Any]]:
         """Yield promises and releases until there is nothing more to decide now.
 
-        A controller that also decides ROA first releases the bundles of a pod, and then yields the
-        stations to which they are sent.
+        If the controller also decides ROA, it first releases the bundles of a pod, and then yields
+        the stations to which the bundles are sent.
         """

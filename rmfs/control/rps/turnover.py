@@ -94,7 +94,7 @@ class Turnover(Buffered[TurnoverPodParameters]):
         return min(self.parameters.buffer_timeouts_s)
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Forget the pod chosen last in its class if a bundle has been stored in this pod."""
+        """Forget the last choice of a class if it was the pod in which a bundle has been stored."""
         self._last = [-1 if pod == subject.pod else pod for pod in self._last]
 
     def _among(self, pods: np.ndarray[Any, np.dtype[np.intp]]) -> int:

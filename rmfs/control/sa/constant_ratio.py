@@ -31,9 +31,9 @@ class ConstantRatio(StationActivation[ConstantRatioParameters]):
 
     Of n stations, m = floor(`active_share` x n) are to be on: p = floor(`pick_share` x m) pick
     stations and m - p replenishment stations. If one of these two numbers is 0, it is raised to 1.
-    If a kind has fewer stations than are to be on, all its stations are on. Otherwise, the stations
-    of the kind with the lowest activation numbers in the layout are on; ties go to the station with
-    the lowest number.
+    If a kind has fewer stations than are to be on, all its stations are on. Otherwise, those of its
+    stations are on that have the lowest activation numbers in the layout; ties go to the station
+    with the lowest number.
     """
 
     parameters_model = ConstantRatioParameters

@@ -80,8 +80,8 @@ class BruteForce(Solo[BruteForceParameters]):
     def decide(self, consult: Consult) -> Iterator[TaskDecision | Prepare]:
         """Yield a task for every robot that needs one, and work for robots at rest.
 
-        If the rule is asked anew after it has parked a robot's pod (in a copy of the run), the task
-        to be done afterwards comes first.
+        If the run is copied just after the rule has yielded the parking of a pod, the copy asks the
+        rule anew; the first task is then the one that follows the parking.
         """
         if self._parked is not None:
             at_s, (robot, place), prepare = self._parked

@@ -104,7 +104,7 @@ class RandomTasks(Solo[RandomTasksParameters]):
         return None
 
     def finds_like(self, robot: Robot) -> Hashable:
-        """Return the robot's kind of work or, if robots may do both kinds, a key common to all."""
+        """Return the robot's kind of work; None (for all robots) if robots may do both kinds."""
         return None if self.parameters.other_kind else self._picks[robot.index]
 
     def _next_station(self, robot: Robot, consult: Consult) -> int:

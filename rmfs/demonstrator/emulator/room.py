@@ -43,7 +43,7 @@ class Address:
 
 
 class EmulatedRobot:
-    """An emulated robot: its base, its sensors and, while the program is running, the program."""
+    """An emulated robot: its base, its sensors and its program, which is None unless running."""
 
     def __init__(
         self,
@@ -64,14 +64,14 @@ class EmulatedRobot:
         self.program = self._start(self)
 
     def kill(self) -> None:
-        """Kill the program: its unsaved state and its connection are lost, and the wheels stop."""
+        """Kill the robot's program (its unsaved state and connection are lost); stop the wheels."""
         self.program = None
         if self.wire is not None:
             self.wire.close()
         self.base.stop()
 
     def step(self, now_us: int) -> None:
-        """Send the delayed messages that are now due; let the program, if running, do one step."""
+        """Send the delayed messages that are now due; if the program runs, let it do one step."""
         if self.wire is not None:
             self.wire.now_us = now_us
             self.wire.pump()
@@ -171,7 +171,7 @@ class Room:
         self._pace.has_ended = True
 
     def close(self) -> None:
-        """Kill all programs, end all connections, and remove the temporary folder, if any."""
+        """Kill the robots' programs, end all connections, and remove any temporary folder."""
         for robot in self.robots.values():
             robot.kill()
         self._pace.close()

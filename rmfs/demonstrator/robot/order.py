@@ -110,7 +110,7 @@ class Order:
 
 @dataclass
 class Memory:
-    """The state of a robot's program that is saved in a file.
+    """The part of the state of a robot's program that is saved in a file.
 
     Attributes
     ----------

@@ -1,4 +1,6 @@
-"""Sessions over TCP with clients: robots and, in an emulation, their room (see `clock`).
+"""Sessions over TCP with clients: robots and, if these are emulated, the emulated room.
+
+An emulated room is a program that emulates robots on a floor (see the module `clock`).
 
 If a client does not know the secret, uses another version of the protocol, or sends a frame that is
 invalid or too long, its connection is closed, and this is logged. Other sessions are not affected.

@@ -23,19 +23,19 @@ Step = tuple[Tile, Tile]
 
 @dataclass(frozen=True, slots=True)
 class Buffer:
-    """The queue zone of one site.
+    """The buffer (queue zone) of one site, that is, of a station or elevator.
 
     Attributes
     ----------
     queue
         Tiles from the station back to the entrance of the first segment.
     tiles
-        All tiles of the zone: the queue, and the way out from the station to the exit.
+        All tiles of the buffer: the queue, and the way out from the station to the exit.
     entrances
-        Edges that lead from the hall into the zone: one each into the first, third, fifth ...
+        Edges that lead from the hall into the buffer: one each into the first, third, fifth ...
         segment.
     steps
-        All directed edges that begin inside the zone.
+        All directed edges that begin inside the buffer.
     """
 
     site: Site
@@ -46,7 +46,7 @@ class Buffer:
 
 
 def buffer(parameters: LayoutParameters, site: Site) -> Buffer:
-    """Return the buffer of a site."""
+    """Return the buffer of a site (a station or elevator)."""
     segments = _segments(parameters, site)
     inward = site.side.opposite
     path = [

@@ -18,8 +18,8 @@ PODS, ROBOTS = 0, 1
 def draw_pods(places: NDArray[np.int32], share: float, seed: int, tier: int) -> NDArray[np.int32]:
     """Choose at random the storage locations where a tier's pods stand at the start of a run.
 
-    They are drawn from `places`, uniformly and without replacement. Their number is `share` times
-    the number of places, rounded down.
+    The locations are drawn from `places`, uniformly and without replacement. The number drawn is
+    `share` times the number of places, rounded down.
     """
     count = math.floor(share * len(places) + 1e-9)
     return _draw(places, count, seed, PODS, tier)

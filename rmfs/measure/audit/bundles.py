@@ -24,9 +24,9 @@ HAIR = 1e-6
 def check(layout: Layout, rows: Rows, skus: pd.DataFrame) -> Chapter:
     """Check that the events of each bundle are its arrival, assignment and storage, in this order.
 
-    The later ones may be missing at the end of the run. The events of a bundle must agree on its
-    SKU, units, pod and station. The bundles that are assigned to a replenishment station and not
-    yet stored must not exceed the station's capacity.
+    The later events are missing if the run ended before them. The events of a bundle must agree on
+    its SKU, units, pod and station. The bundles that are assigned to a replenishment station and
+    not yet stored must not exceed the station's capacity.
     """
     steps = rows.of_kind(*STEPS)
     order = np.lexsort((steps.number, steps.order))

@@ -1,9 +1,9 @@
 """The table `delays`: for each order line, the parts of its order's turnover time.
 
 The parts are the times between the following moments (some of these times are divided further): the
-order arrives; the line is assigned to a station, with its order or with a part of it; a robot gets
-the task to bring the pod from which the line's last unit is picked; the robot lifts the pod; the
-robot enters the queue zone; the robot reaches the station; the line's last unit has been handled;
+order arrives; the line is assigned to a station, with all or a part of its order; a robot gets the
+task to bring the pod from which the line's last unit is picked; the robot lifts the pod; the robot
+enters the queue zone; the robot reaches the station; the line's last unit has been handled;
 the order is complete. The parts add up to the order's turnover time. If the robot got its task,
 lifted the pod, entered the queue zone or reached the station before the line was assigned, the time
 of the assignment takes the place of that moment.

@@ -52,7 +52,7 @@ class Rest:
 
 
 class BacklogOrders:
-    """Tops up a backlog of orders (a process of an intake).
+    """An intake process that tops up a backlog of orders.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class BacklogOrders:
 
 
 class BacklogBundles:
-    """Tops up a backlog of bundles (a process of an intake).
+    """An intake process that tops up a backlog of bundles.
 
     Parameters
     ----------

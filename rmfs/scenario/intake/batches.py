@@ -41,7 +41,7 @@ def _fewer_than(number: int, _state: State, come: int) -> bool:
 
 
 class Batches(Generic[T]):
-    """Generates batches (a process of an intake).
+    """An intake process that generates batches.
 
     Parameters
     ----------

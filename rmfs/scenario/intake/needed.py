@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class NeededBundles:
-    """Generates bundles of SKUs that run short (a process of an intake).
+    """An intake process that generates bundles of SKUs that run short.
 
     The units left of a SKU are its stored units, plus those in bundles that have arrived and are
     not stored yet, minus those that orders still need. A SKU is short if fewer units are left

@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 
 class Timed(Generic[T]):
-    """Generates arrivals at given times (a process of an intake).
+    """An intake process that generates arrivals at given times.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Writes streams to files, and computes digests (hashes that identify streams).
+"""Writes streams of orders or bundles to files, and computes their digests (hashes).
 
 Every stream has one canonical text: the content of the CSV file that this module writes for it,
 with times in seconds to six decimal places. The digest of the stream is the SHA-256 of this text.

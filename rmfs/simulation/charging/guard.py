@@ -75,8 +75,8 @@ class EnergyGuard:
         """Send free and resting robots to charge if their energy might not suffice for a task.
 
         This method must be called before tasks are assigned. A robot that carries a pod stores the
-        pod first. If `consult` has to wait for an answer, the next call goes on with the same
-        robot.
+        pod first. If `consult` has to wait for an answer, the next call of this method goes on with
+        the same robot.
         """
         view = self._view
         if self._left is None:

@@ -81,7 +81,7 @@ class WallPlanning(_Planning):
 
 
 class ReplayPlanning(Model):
-    """Computing plans takes the simulated times recorded in a run, with that run's parameters."""
+    """Computing plans takes the times recorded in a run, whose planning parameters are used, too."""
 
     model_config = _Planning.model_config
     mode: Literal["replay"] = "replay"

@@ -121,7 +121,8 @@ class Plan:
         solution
             For each pod, the station for which it is called (`pod_station`) and the robot that is
             to fetch it (`pod_robot`). For each item, the station at which it gets a slot
-            (`station`) or is a prospect (`prospect`). A value is -1 if there is none.
+            (`station`), or whose pods can serve it although it gets no slot now (`prospect`). A
+            value is -1 if there is none.
         items
             Items to which the indices in the solution refer.
         call
@@ -156,8 +157,8 @@ class Plan:
 
         Items that the pod at the head of the queue can serve come first, and may use the reserved
         slots (`kept_slots`). A called pod is fetched only once it can serve an item with a slot at
-        the station. As long as there is no such item, items without a slot that this pod can serve
-        may use the reserved slots, too. Items are dropped and counted as stale if they have left
+        the station. As long as it can serve no such item, other items that it can serve may use
+        the reserved slots, too. Items are dropped and counted as stale if they have left
         the backlog. Unless `later` is true, they are also dropped if pods called or under way no
         longer have enough units for them.
         """

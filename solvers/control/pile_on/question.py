@@ -26,7 +26,7 @@ class Question:
     Attributes
     ----------
     data
-        The snapshot.
+        Snapshot of the orders, stations, pods and robots.
     method
         `joint`, `cp_sat`, `greedy` or `hadgs`.
     limits, pruning

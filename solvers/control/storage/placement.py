@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """Returning pods and empty storage locations (places).
+    """The pods that are to be stored, and the empty storage locations (places).
 
     Attributes
     ----------
@@ -99,6 +99,6 @@ class PlacementControl(Ahead[PlacementParameters]):
         return Ask(solve, Question(data, self.parameters.method, waypoint), sizes, pods)
 
     def places(self, call: Call) -> Sequence[int]:
-        """Return the places of the answer."""
+        """Return the place (waypoint) that the answer assigns to each pod."""
         assert call.solution is not None
         return [int(place) for place in call.solution["place"]]

@@ -26,13 +26,13 @@ def check(decision: Decision, found: Found) -> float:
     Parameters
     ----------
     decision
-        The question.
+        The question that was answered.
     found
-        The answer.
+        The answer to be verified.
 
     Returns
     -------
-    The value of the answer.
+    The recomputed value of the answer.
 
     Raises
     ------

@@ -1,9 +1,9 @@
-"""External solvers as commands, which read a program and write a solution file.
+"""External solvers as commands, which read a mathematical program and write a solution file.
 
 No external solver is required. A solver is specified by its name, if its command is on the search
 path (`PATH`), or by a command with the placeholders `{program}`, `{solution}` and `{seconds}`. The
 command is split into words as in a shell, but run without a shell. A solution counts only if
-`checking` accepts it.
+the package `checking` accepts it.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
     Parameters
     ----------
     decision
-        The question.
+        The question to be solved.
     solver
         `highs`, a name in `COMMANDS`, or a command.
     seconds
@@ -69,8 +69,8 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
 
     Returns
     -------
-    The answer, without a bound, as solution files contain none. Its `by` states the wall time for
-    building and writing the program (`build_s`), and the total wall time (`wall_s`), in s.
+    The answer, without a bound, as solution files contain none. Its attribute `by` states the wall time
+    for building and writing the program (`build_s`), and the total wall time (`wall_s`), in s.
 
     Raises
     ------

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Exact:
-    """A program whose optimal solutions are those of the question.
+    """A program whose optimal solutions are those of the question that it formulates.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ def exact(decision: Decision, where: str = "") -> Exact:
     Parameters
     ----------
     decision
-        The question.
+        The question to be formulated.
     where
         Name of the question in error messages, such as the path of its file. Default:
         `decision.name`.

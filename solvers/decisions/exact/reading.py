@@ -38,9 +38,9 @@ def read_columns(stated: Exact, path: Path) -> NDArray[np.float64]:
     Parameters
     ----------
     stated
-        The program.
+        The program that was solved.
     path
-        The file.
+        The solution file.
 
     Raises
     ------

@@ -45,7 +45,7 @@ def routes(
     Parameters
     ----------
     data
-        The question.
+        The data of the question.
     """
     ways, robots, tasks = every_way(data), data.robots, data.tasks
     builder = ProgramBuilder()

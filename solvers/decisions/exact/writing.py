@@ -29,12 +29,12 @@ FORMATS = ("mps", "lp")
 
 
 def write_program(stated: Exact, path: Path) -> None:
-    """Write a program as MPS or LP, depending on the suffix of the file.
+    """Write a mathematical program as MPS or LP, depending on the suffix of the file.
 
     Parameters
     ----------
     stated
-        The program.
+        The program, as returned by `exact`.
     path
         `NAME.mps` or `NAME.lp`.
     """
@@ -43,14 +43,14 @@ def write_program(stated: Exact, path: Path) -> None:
 
 
 def write_map(decision: Decision, stated: Exact, path: Path) -> None:
-    """Write a file that states which decision each column represents (`rmfs-decision-map/1`).
+    """Write a file (`rmfs-decision-map/1`) with the decision that each column represents.
 
     Parameters
     ----------
     decision
-        The question.
+        The question that was formulated.
     stated
-        Its program.
+        The exact program of the question.
     path
         The file.
     """

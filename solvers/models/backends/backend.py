@@ -41,7 +41,7 @@ class Formulation(Generic[V]):
     Attributes
     ----------
     program
-        The program.
+        The integer program.
     encode
         Function that turns the model's values into column values.
     decode
@@ -132,7 +132,7 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS, *, seed: int = 0) 
     Parameters
     ----------
     program
-        The program.
+        The integer program.
     limits
         `iterations` limits the simplex method. Default: no limit.
     seed

@@ -3,7 +3,8 @@ r"""Greedy heuristic: robots choose their stays in turn, lowest battery level fi
 This is repeated until a round changes no choice or the maximum number of rounds is reached.
 
 For the lower bound, each robot pays a price :math:`\lambda_t` for being away in time slot t. Let
-:math:`m_t(a)` be the cost of missing robots in time slot t if a robots are away. For any price,
+:math:`m_t(a)` be the cost of missing robots in time slot t if the number of robots away is
+:math:`a`. For any price,
 
 .. math:: m_t(away_t) \ge \lambda_t\, away_t + \min_a \bigl(m_t(a) - \lambda_t a\bigr).
 

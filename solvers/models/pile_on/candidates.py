@@ -49,7 +49,7 @@ class Candidates:
             object.__setattr__(self, field, flags(field, getattr(self, field), (None, None)))
 
     def including(self, values: Assignment) -> Candidates:
-        """Return these pairs plus those of a decision, so that a solver can start from it.
+        """Return these pairs plus those of a decision, so that a solver can start from the decision.
 
         Parameters
         ----------

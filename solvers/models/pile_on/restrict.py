@@ -171,9 +171,9 @@ def part(
     An order that has slots both at a free station and at another one stays fixed. Its slots at the
     free stations remain taken, and its lines covered there become open demand. A pod called to a
     free station stays called if it holds a SKU of such a line. If fixed orders take all slots of a
-    free station, the prospects of this station stay fixed, too. As open demand need not be covered,
-    a decision returned by `merge` may leave one of these lines without stock; `violations` reports
-    this.
+    free station, the prospects of this station (see `Assignment`) stay fixed, too. As open demand
+    need not be covered, a decision returned by `merge` may leave one of these lines without stock;
+    `violations` reports this.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""A decision, its cost, and its feasibility.
+r"""A joint decision on orders, pods and robots, its cost, and its feasibility.
 
 The symbols of the objective are
 

@@ -40,7 +40,7 @@ def solve(
         Pods of the new visits of an earlier plan, one sequence per station. Visits are added to
         those that are still possible. Not used if `start` is given. Default: none.
     bound_steps
-        Number of steps for the bound (`prices`). Default: no bound.
+        Number of subgradient steps of `prices.bound`. Default: 0, that is, no bound.
 
     Returns
     -------

@@ -129,7 +129,7 @@ class Columns:
 
 
 def formulate(data: Sequencing, visits: int, least: int) -> Formulation[VisitSequence]:
-    """Formulate the program.
+    """Formulate rack sequencing with at most `visits` visits as an integer program.
 
     Parameters
     ----------

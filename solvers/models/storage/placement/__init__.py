@@ -1,4 +1,4 @@
-"""Assign returning pods to free places at the least cost, expected next visits included."""
+"""Assign returning pods to free places at the least cost, including the cost of expected visits."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -22,7 +22,7 @@ def solve(
 
 
 def solve_by(data: Placement, solver: Solver) -> Solution[NDArray[np.int64]]:
-    """Find the placement with the least robot time by the given assignment solver.
+    """Find the placement with the least robot time, using the given assignment solver.
 
     Parameters
     ----------

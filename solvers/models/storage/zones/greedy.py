@@ -19,9 +19,9 @@ _PORTIONS = 16
 def solve(
     data: Zones, limits: Limits = NO_LIMITS, *, seed: int = 0, start: ZonePlan | None = None
 ) -> Solution[ZonePlan]:
-    """Place classes, highest visit rate first, in portions in the zones with the fastest visits.
+    """Place classes, the highest visit rate first, in the zones with the fastest visits.
 
-    Each portion goes to the zone with room in which a visit takes the least robot time. This time
+    Each class is placed in portions. Each portion goes to the zone with room in which a visit takes the least robot time. This time
     includes the delay that one more visit causes to itself and to other visits.
 
     The saving of a class in a zone is the robot time per hour that each of its pods saves there,

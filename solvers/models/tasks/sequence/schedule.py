@@ -28,11 +28,11 @@ def approach_s(data: TaskSequence, robot: int, place: int, task: int) -> float:
     data
         The problem.
     robot
-        The robot.
+        Index of the robot.
     place
         Place where the robot stored its last pod, or `NONE` if it starts from its initial position.
     task
-        The task.
+        Index of the task.
     """
     return float(data.reach_s[robot, task] if place == NONE else data.fetch_s[place, task])
 
@@ -47,7 +47,7 @@ def follow(
     data
         The problem.
     robot
-        The robot.
+        Index of the robot.
     tasks
         The robot's tasks in sequence.
     place
@@ -84,9 +84,9 @@ def lateness_s(data: TaskSequence, task: int, arrival_s: float) -> float:
     data
         The problem.
     task
-        The task.
+        Index of the task.
     arrival_s
-        Time when its pod arrives at the station, in s.
+        Time when the pod of the task arrives at its station, in s.
     """
     if arrival_s > data.latest_s[task] + SLACK_S:
         return math.inf
