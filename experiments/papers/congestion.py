@@ -2,10 +2,10 @@
 
 In the design `congestion`, PSA, and TA by linear assignment, decide by travel times that either
 include or ignore the delay expected from congestion. Two sites with quick stations are simulated,
-each once with few robots and once with so many that the aisles are full. The study publishes the changes of
-units per hour, of the delay per trip and of the distance per unit, paired by seed. It also
-publishes the share of trip time that is delay, which is an upper bound on what such decisions can
-save, and the share of time for which robots have no task.
+each once with few robots and once with so many that the aisles are full. The study publishes the
+changes of units per hour, of the delay per trip and of the distance per unit, paired by seed. It
+also publishes the share of trip time that is delay, which is an upper bound on what such decisions
+can save, and the share of time for which robots have no task.
 """
 
 from __future__ import annotations
@@ -44,7 +44,8 @@ def levels(frame: pd.DataFrame) -> Table:
     Parameters
     ----------
     frame
-        One row per run: `site`, `knows`, `replication` and the columns in `COLUMNS`.
+        One row per run: the levels of the factors `site` and `knows`, the number `replication` of
+        the run, and the columns in `COLUMNS`.
     """
     rows: Rows = {}
     for site, runs in frame.groupby(SITE, sort=False):

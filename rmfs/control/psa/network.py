@@ -45,7 +45,7 @@ class NetworkRule(PodStorageAssignment[NetworkParameters]):
         self._scorer = Scorer("place", parameters.network, parameters.candidates)
 
     def place(self, robot: Robot) -> int:
-        """Choose the storage location with the highest score; -1: none is empty, or declining wins."""
+        """Choose the location with the highest score; -1 if none is empty or declining wins."""
         found = candidates_for(self.view, Question(Problem.PSA, "place", robot.index))
         row = self._scorer.best_of(found, self.view)
         return int(found[row]) if row >= 0 else -1

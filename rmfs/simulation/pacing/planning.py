@@ -81,7 +81,7 @@ class WallPlanning(_Planning):
 
 
 class ReplayPlanning(Model):
-    """Computing plans takes the times recorded in a run, whose planning parameters are used, too."""
+    """Computing plans takes the times recorded in a run, whose planning parameters also apply."""
 
     model_config = _Planning.model_config
     mode: Literal["replay"] = "replay"

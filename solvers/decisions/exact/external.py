@@ -69,8 +69,8 @@ def solve_externally(decision: Decision, solver: str, seconds: float, where: str
 
     Returns
     -------
-    The answer, without a bound, as solution files contain none. Its attribute `by` states the wall time
-    for building and writing the program (`build_s`), and the total wall time (`wall_s`), in s.
+    The answer, without a bound, as solution files contain none. Its attribute `by` states the wall
+    time for building and writing the program (`build_s`), and the total wall time (`wall_s`), in s.
 
     Raises
     ------

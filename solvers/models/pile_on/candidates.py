@@ -49,7 +49,7 @@ class Candidates:
             object.__setattr__(self, field, flags(field, getattr(self, field), (None, None)))
 
     def including(self, values: Assignment) -> Candidates:
-        """Return these pairs plus those of a decision, so that a solver can start from the decision.
+        """Return these pairs plus those of a decision, from which a solver can then start.
 
         Parameters
         ----------

@@ -21,8 +21,9 @@ def solve(
 ) -> Solution[ZonePlan]:
     """Place classes, the highest visit rate first, in the zones with the fastest visits.
 
-    Each class is placed in portions. Each portion goes to the zone with room in which a visit takes the least robot time. This time
-    includes the delay that one more visit causes to itself and to other visits.
+    Each class is placed in portions. Each portion goes to the zone with room in which a visit takes
+    the least robot time. This time includes the delay that one more visit causes to itself and to
+    other visits.
 
     The saving of a class in a zone is the robot time per hour that each of its pods saves there,
     compared with the best zone that still has room. The price of a place in a zone is the smallest
