@@ -69,8 +69,8 @@ _INSTALLED_ONLY: ContextVar[bool] = ContextVar("_INSTALLED_ONLY", default=False)
 def installed_only() -> Iterator[None]:
     """Return a context in which `require_allowed` refuses references such as `module:Class`.
 
-    It is used for requests that may select installed classes by name but must not run any other
-    code, such as requests from a web page.
+    The context is for requests that may select installed classes by name but must not run any
+    other code, such as requests from a web page.
     """
     token = _INSTALLED_ONLY.set(True)
     try:

@@ -56,7 +56,7 @@ class Found:
     weights
         Weight of each feature, in s.
     extra_s
-        Extra cost of each edge in s, aligned with `edge_target`.
+        Extra cost of each edge in s, aligned with `layout.edge_target`.
     value, base_value
         Mean objective with and without this guidance, over the seeds `Task.other_seeds`.
     history

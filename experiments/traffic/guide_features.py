@@ -40,7 +40,7 @@ FEW = 5.0
 def features(
     layout: Layout, edges: pd.DataFrame, heat: pd.DataFrame
 ) -> dict[str, NDArray[np.float64]]:
-    """Return the features of all edges, by name, each of shape (M,), aligned with `edge_target`.
+    """Return the features of all edges, by name, each of shape (M,), as in `layout.edge_target`.
 
     Parameters
     ----------

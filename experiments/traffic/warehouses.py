@@ -100,7 +100,7 @@ def table(
     check: bool = False,
     tell: Callable[[str], None] = print,
 ) -> pd.DataFrame:
-    """Measure sites of several fleet sizes under all sets of rules; return one row per pair.
+    """Measure sites of several fleet sizes; return one row per site and set of rules.
 
     Parameters
     ----------
@@ -188,8 +188,8 @@ def advance_by_windows(simulation: Simulation, until_s: float) -> int:
 
     Returns
     -------
-    The largest number of such robots in any window (see `standing_with_work`). The last window,
-    of at most `WINDOW_S`, is not included.
+    The largest number of robots that stood still throughout a window (see `standing_with_work`).
+    The last window, of at most `WINDOW_S`, is not included.
     """
     most = 0
     motion = simulation.traffic.motion()
@@ -223,7 +223,7 @@ def _deciding_s(simulation: Simulation) -> float:
 def growth(frame: pd.DataFrame) -> dict[str, float]:
     """Return, for each set of rules, the growth of the processor time per robot-hour.
 
-    This is the time with the largest fleet divided by the time with the smallest fleet.
+    The growth is the time with the largest fleet divided by the time with the smallest fleet.
     """
     grown = {}
     for rules, rows in frame.groupby("rules", sort=False):

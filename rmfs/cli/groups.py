@@ -56,7 +56,7 @@ def names_of(kind: Literal["layouts", "scenarios", "controllers"]) -> Callable[[
 
 
 class LazyGroup(TyperGroup):
-    """A command group that imports the commands of `ELSEWHERE` only when they are called."""
+    """A command group that imports commands of other sub-packages only when they are called."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Return the names of all commands, loaded or not."""

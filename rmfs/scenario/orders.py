@@ -51,7 +51,7 @@ class OrderContent(NamedTuple):
 class OrderSource:
     """Draws orders of SKUs that are in stock.
 
-    Order k is drawn from substream (seed, k), so it depends only on the seed, its ordinal and the
+    Order k is drawn from substream (seed, k), so it depends only on the seed, its number k and the
     stock: two runs with the same seed get the same orders until their stock differs. If
     earlier orders leave too few units of the SKU drawn for a line, the SKU is redrawn with the next
     number of the substream; this is equivalent to a draw among the SKUs with enough units left.

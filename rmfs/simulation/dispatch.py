@@ -198,7 +198,7 @@ class Dispatch:
         self._events.pod_set_down(self._world.now_s, pod, index, robot.waypoint)
 
     def idle(self, index: int, _waypoint: int) -> None:
-        """End the task of a robot that has done all its steps, if the task was to store a pod."""
+        """End a robot's task, all steps of which are done, if the task was to store a pod."""
         task = self._world.robots[index].task
         if task is not None and task.stores:
             end_task(self._world, self._events, index)

@@ -26,7 +26,7 @@ class Trial(Protocol):
     def take_over(
         self, problem: Problem, base: Controller[Any], decision: Any, watch: Observer
     ) -> None:
-        """Apply a decision on a problem; from then on, the rule `base` decides the problem."""
+        """Apply a decision of a problem; the rule `base` makes all later ones of this problem."""
         ...
 
     def run_until(self, time_s: float) -> Any:
@@ -60,8 +60,8 @@ class Forks:
     Parameters
     ----------
     snapshot
-        Function that saves the state of the run, together with an object that may refer to parts
-        of it.
+        Function that saves the state of the run and, with it, the object given as the argument,
+        which may refer to parts of the run.
     """
 
     def __init__(self, snapshot: Callable[[Any], Copies]) -> None:

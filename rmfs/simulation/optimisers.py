@@ -24,7 +24,7 @@ class Answers(Protocol):
     """Receiver of the answers of optimisers."""
 
     def tell(self, call: Call) -> None:
-        """Pass the answer to the controller that asked, immediately."""
+        """Immediately pass an answer to the controller that asked."""
         ...
 
     def came(self, call: Call) -> None:

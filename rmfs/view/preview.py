@@ -1,4 +1,4 @@
-"""The preview of a layout that the form shows before a run is started."""
+"""The preview of a layout, shown by the form in which a run is set up and started."""
 
 from __future__ import annotations
 

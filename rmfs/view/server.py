@@ -1,4 +1,4 @@
-"""The server of the page and its runs, on the loopback interface only.
+"""The server of the viewer's page and of its data, on the loopback interface only.
 
 The path of a request is looked up in a fixed table, never in the file system, so that a request
 cannot reach files outside this table. Requests that name another host (DNS rebinding) or come from

@@ -1,7 +1,7 @@
 """Stock on the pods, and space promised on them.
 
 - *contained*: units that are physically on a pod; a unit is subtracted when its pick starts.
-- *available*: contained units not yet bound to an extract request.
+- *available*: contained units not yet bound to a request of an order.
 - *promised*: space reserved on a pod for bundles to be stored there.
 
 Totals per SKU, loads of pods and the stock inbound to a station depend on these quantities and are

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 class OrderLine:
     """Units of one SKU in one order.
 
-    There is an extract request for each unit. A request is *open* until a unit on a certain pod is
+    There is a request for each unit. A request is *open* until a unit on a certain pod is
     bound to it. This happens when a robot gets the task of bringing that pod, or later during the
     task.
 

@@ -217,12 +217,12 @@ def profile(
 
 
 def expanded(files: list[Path]) -> list[Path]:
-    """Replace folders by the decision files that they contain.
+    """Replace folders by the question files that they contain.
 
     Raises
     ------
     InputError
-        If there are no decision files.
+        If there are no question files.
     """
     found: list[Path] = []
     for one in files:

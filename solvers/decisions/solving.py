@@ -98,7 +98,7 @@ def solve(
         If there is no such method, if the model rejects the question, or if `asked` is combined
         with `work`, `seed` or `start`.
     WrongError
-        If the answer breaks a rule or states a wrong objective or bound.
+        If the answer violates a constraint, or states a wrong objective or bound.
     WallGuardError
         If the method took longer than `guard_s`.
     """

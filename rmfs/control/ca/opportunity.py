@@ -41,8 +41,8 @@ class OpportunityParameters(LevelParameters):
 class Opportunity(ByLevel[OpportunityParameters]):
     """Lets robots charge while they have no work, and calls them back when there is work.
 
-    A robot at rest goes to a free place if its level is below `idle_below_share`. A robot below
-    `below_share` charges even if there is work.
+    A robot at rest goes to a free energy station if its level is below `idle_below_share`. A robot
+    below `below_share` charges even if there is work.
     """
 
     parameters_model = OpportunityParameters
@@ -76,7 +76,7 @@ class Opportunity(ByLevel[OpportunityParameters]):
     def wanted_share(self, robot: Robot, share: float) -> float:
         """Return `until_share` if the robot's level is below its threshold, else 0.
 
-        The threshold is `idle_below_share` for a robot at rest while a place is free, and
+        The threshold is `idle_below_share` for a robot at rest while an energy station is free, and
         `below_share` otherwise.
         """
         given, view = self.parameters, self.view

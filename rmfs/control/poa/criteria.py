@@ -105,7 +105,7 @@ class Size(Parameters):
     """Whether size is counted in unpicked units or in order lines."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return each order's number of unpicked units, or of order lines, as `count` requires."""
+        """Return each order's number of unpicked units or, if `count` is `lines`, of its lines."""
         if self.count == "lines":
             sizes = [len(order.lines) for order in contest.orders()]
         else:
@@ -122,7 +122,7 @@ class Completable(Parameters):
     of the order may then be bound to another pod), or all pods together (`all-pods`)."""
 
     def score(self, contest: Contest, rng: np.random.Generator) -> Scores:
-        """Return 1 for orders that can be completed as `by` requires, else 0."""
+        """Return 1 for orders that the pods considered (see `by`) can complete, else 0."""
         if self.by == "all-pods":
             return contest.completed_by_all()
         pods, _ = contest.inbound()

@@ -82,10 +82,10 @@ class FastLane:
                 yield AssignOrder(order, index)
 
     def promising(self) -> list[int]:
-        """Return the stations with a free slot whose pod may complete an order, lowest first.
+        """Return the numbers of stations with a free slot and a pod that may complete an order.
 
-        If there are new orders since the last call, all stations with a free slot are checked;
-        otherwise, only those that have changed.
+        The numbers are ascending. If there are new orders since the last call, all stations with a
+        free slot are checked; otherwise, only those that have changed.
         """
         newest = next(reversed(self._view.orders.orders), -1)
         changed, serving = self._news.take(), self._serving

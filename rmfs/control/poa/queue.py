@@ -94,7 +94,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
         return Steps(self)
 
     def completed_by_pod(self, pod: int, station: PickStation) -> int:
-        """Choose an order that the pod completes, preferably of the pool; -1 if there is none."""
+        """Choose an order that a pod completes, preferably of the station's pool; -1 if none."""
         if pod not in station.tasks:
             return -1
         queued_at = self.view.orders.queued_at
@@ -109,7 +109,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
         return -1
 
     def from_pool(self, station: PickStation) -> int:
-        """Choose an order of a station's pool for a slot; -1 if there is none, or no slot."""
+        """Choose an order of a station's pool for a slot; -1 if there is no order or no slot."""
         if not station.active or station.free_slots <= self._kept_slots[station.index]:
             return -1
         if not station.queued:
@@ -123,7 +123,7 @@ class Queue(PickOrderAssignment[QueueParameters]):
 
 
 class Pools:
-    """Fills the pools, pair of order and station by pair."""
+    """Fills the pools, choosing one pair of order and station at a time."""
 
     def __init__(self, rule: Queue) -> None:
         self._rule = rule

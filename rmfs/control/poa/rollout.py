@@ -40,7 +40,7 @@ class Rollout(TriesOut, PickOrderAssignment[RolloutParameters]):
         self.hears = self.base.hears  # type: ignore[misc]
 
     def decide(self) -> Iterator[Any]:
-        """Yield the base rule's decision or, if others are possible, ask which of them is best."""
+        """Yield the base rule's decision or, if there are others, ask which of all is the best."""
         while not self.in_flight:
             first = next(iter(self.base.decide()), None)
             if first is None:

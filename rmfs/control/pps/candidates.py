@@ -176,7 +176,7 @@ class PickCandidates(Candidates):
         return served
 
     def completed(self) -> Completed:
-        """Return which orders are completed by each pod if it serves all of their open requests.
+        """Return, for each pod, which orders it completes by serving all of their open requests.
 
         Assigned orders are considered in the sequence of their assignment, then queued orders in
         the sequence in which they joined the pool. An order takes units from the pod only if the

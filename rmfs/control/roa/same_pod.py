@@ -104,7 +104,7 @@ class SamePod(ReplenishmentOrderAssignment[SamePodParameters]):
         ]
 
     def can_go_on(self, pod: int) -> bool:
-        """Return whether a station is on to which the pod may be brought."""
+        """Return whether any station to which the pod may be brought is switched on."""
         return bool(self._on(pod))
 
     def for_batch(self, pod: int, batch: Sequence[Bundle]) -> ReplenishmentStation | None:

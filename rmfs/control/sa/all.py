@@ -16,7 +16,7 @@ class AllStations(StationActivation[NoParameters]):
     """Switches every station on at the start."""
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield a decision to switch on each station that is off."""
+        """Yield, for each station that is off, a decision to switch it on."""
         for station in self.view.stations:
             if not station.active:
                 yield SwitchStation(station.index, active=True)

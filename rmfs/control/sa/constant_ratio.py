@@ -39,7 +39,7 @@ class ConstantRatio(StationActivation[ConstantRatioParameters]):
     parameters_model = ConstantRatioParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield a decision to switch each station that is not in the desired state."""
+        """Yield, for each station that is not in the desired state, a decision to switch it."""
         on = self._on()
         for station in self.view.stations:
             if station.active != (station.index in on):

@@ -50,7 +50,7 @@ class Staffed(StationActivation[StaffedParameters]):
     parameters_model = StaffedParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield a decision to switch each station that is not in the desired state."""
+        """Yield, for each station that is not in the desired state, a decision to switch it."""
         staff = self.view.staff
         for station in self.view.stations:
             on = staff is None or station.index >= len(staff.at_station)

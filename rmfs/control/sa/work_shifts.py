@@ -63,7 +63,7 @@ class WorkShifts(StationActivation[WorkShiftsParameters]):
     parameters_model = WorkShiftsParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield a decision to switch each station that is not in the state of the current shift."""
+        """Yield, for each station not in the state of the current shift, a decision to switch it."""
         on = self._present()[0]
         for station in self.view.stations:
             if station.active != on:

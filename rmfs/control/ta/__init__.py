@@ -43,7 +43,7 @@ class Consult(Protocol):
         ...
 
     def move_for(self, robot: Robot) -> Move | None:
-        """Ask the repositioning rule for a move by a robot without a pod; None if it has none."""
+        """Ask the repositioning rule for a move by a robot without a pod; None if there is none."""
         ...
 
 

@@ -74,7 +74,10 @@ class Linear(Solo[LinearParameters]):
         return None
 
     def finds_like(self, robot: Robot) -> Hashable:
-        """Return the robot's number, because the weighted sums depend on the robot's position."""
+        """Return the robot's number as the key of its group: each robot is a group of its own.
+
+        The weighted sums depend on the robot's position.
+        """
         return robot.index
 
     def _best_first(self, robot: Robot, least: float = -inf) -> list[tuple[int, int]]:

@@ -112,7 +112,7 @@ class Swarm(Solo[SwarmParameters]):
         return bring(self.view, chosen, pod, station)
 
     def finds_like(self, robot: Robot) -> Hashable:
-        """Return the robot's number: each robot draws for itself."""
+        """Return the robot's number as the key of its group, as each robot draws for itself."""
         return robot.index
 
     def _next_station(self, robot: Robot, consult: Consult) -> int:

@@ -46,7 +46,7 @@ class TurnoverParameters(Parameters):
 
     @classmethod
     def of(cls, parameters: TurnoverParameters) -> TurnoverParameters:
-        """Extract the parameters of this class from a rule's parameters, which include them."""
+        """Extract the `TurnoverParameters` from a rule's parameters, which include them."""
         names = TurnoverParameters.model_fields
         return TurnoverParameters(**{name: getattr(parameters, name) for name in names})
 
@@ -61,7 +61,7 @@ class TurnoverClasses(Tracker):
       divided among the classes in proportion to the number of locations in each class.
     - SKUs are sorted by units ordered, the most ordered first; ties are broken by number. The
       weight of a SKU is the mean of two shares: its share of all units ordered, and its share of
-      the space that one unit of every SKU takes. A class takes SKUs until the total weight of the
+      the total space of one unit of each SKU. A class takes SKUs until the total weight of the
       SKUs in this and faster classes reaches a limit: the capacity of the pods in these classes, as
       a share of the capacity of all pods.
 

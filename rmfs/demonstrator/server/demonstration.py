@@ -32,7 +32,7 @@ class Demonstration:
     hub
         The server's sessions with the real or emulated robots.
     robots
-        Index in the layout of each of these robots, by the robot's name.
+        Index in the layout of each real or emulated robot, by the robot's name.
     tags
         The tag of every waypoint.
     journal

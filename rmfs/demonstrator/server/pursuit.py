@@ -74,7 +74,7 @@ class Pursuit:
         return cls(number, move, heading_rad, waypoints, along, seconds, turned=turned)
 
     def next_us(self, move: PlannedMove) -> int:
-        """Return the planned time, in us, at the next waypoint that the robot has to confirm.
+        """Return the planned arrival time, in us, at the next waypoint that is to be confirmed.
 
         If the robot has confirmed all waypoints, return the planned end of the move.
 
@@ -102,7 +102,7 @@ class Pursuit:
         del self.waypoints[upto:], self.along_m[upto:], self.seconds[upto:]
 
     def follow(self, move: PlannedMove, layout: Layout, robot: int) -> None:
-        """Replace `move` by a shortened version; update waypoints, distances and times."""
+        """Replace the move by its shortened version `move`; update waypoints, distances, times."""
         self.move = move
         self.waypoints, self.along_m, self.seconds = _course(layout, move, robot)
 

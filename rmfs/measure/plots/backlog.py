@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def backlog(series: pd.DataFrame, ax: Axes) -> None:
-    """Draw the waiting orders, open orders and waiting bundles in a table `series` over time."""
+    """Plot waiting orders, open orders and waiting bundles over time, from a table `series`."""
     time_h = series["time_s"] / 3600.0
     for column, label, colour, style in (
         ("backlog_orders", "orders waiting", colours.PICK_STATION, "-"),

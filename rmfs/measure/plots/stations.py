@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def stations(frame: pd.DataFrame, ax: Axes) -> None:
-    """Draw the busy share of each station in a table `stations` as a bar.
+    """Draw a bar for the busy share of each station, from a table `stations`.
 
     The bars of replenishment stations are hatched.
     """

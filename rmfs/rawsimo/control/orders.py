@@ -132,7 +132,7 @@ def poa(kind: str, block: Settings) -> Table:
     Parameters
     ----------
     kind
-        Name of the method, one of `POA`.
+        Name of the method: one of the names in the tuple `POA`.
 
     Raises
     ------

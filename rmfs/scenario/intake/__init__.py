@@ -1,7 +1,7 @@
 """Arrivals of orders and bundles: the interface between a scenario and a simulation.
 
-A simulation gets the arrivals from an intake at time zero, at `next_us`, and after every change of
-backlog or stock. It does not depend on how the scenario generates orders and bundles.
+A simulation gets the arrivals from an intake at time zero, at the time `Intake.next_us`, and after
+every change of backlog or stock. How the scenario generates orders and bundles does not concern it.
 """
 
 from rmfs.scenario.intake.bundles import bundle_intake as bundle_intake

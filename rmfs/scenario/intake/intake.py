@@ -56,7 +56,7 @@ class OrderArrival(NamedTuple):
 
 
 class BundleArrival(NamedTuple):
-    """A bundle that arrives: units of one SKU, and the space units they take.
+    """A bundle that arrives: units of one SKU, and the space they take, in space units.
 
     `in_file` is the position of the bundle in the file from which it comes; -1 if it comes from no
     file.

@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Question:
-    """The planning problem at one instant.
+    """The planning problem at one instant, and how it is to be solved.
 
     Attributes
     ----------
     data
-        The snapshot.
+        The planning problem, made from the state of the world.
     start
         For each station, the pods of the last plan that are not called yet and are still available.
     method, limits, seed
@@ -43,7 +43,7 @@ class Question:
 
 
 def solve(question: Question) -> Answer:
-    """Solve the problem.
+    """Solve the planning problem of a question.
 
     Returns
     -------

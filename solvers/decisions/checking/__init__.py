@@ -37,8 +37,8 @@ def check(decision: Decision, found: Found) -> float:
     Raises
     ------
     WrongError
-        If the answer has no values, breaks a rule, or states a wrong objective or a bound that
-        contradicts its value.
+        If the answer has no values, violates a constraint, or states a wrong objective or a bound
+        that contradicts its value.
     """
     if found.values is None:
         raise WrongError("values: missing: the solution contains no answer")

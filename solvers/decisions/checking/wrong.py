@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 class WrongError(ValueError):
-    """An answer breaks a rule; the message says which rule, and where."""
+    """An answer is wrong; the message says what is wrong, and where."""
 
 
 def require(condition: object, problem: str) -> None:

@@ -50,7 +50,7 @@ class Formulation(Generic[V]):
         Functions of the model's values: the first returns their objective, the second describes
         the constraints that they violate.
     names
-        Function that enters the name and meaning of each column in the `Names` passed to it.
+        Function that enters, in the `Names` passed to it, the name and meaning of each column.
         Default: enters nothing.
     """
 

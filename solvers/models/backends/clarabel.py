@@ -147,7 +147,7 @@ def relax(program: LinearProgram, limits: Limits = NO_LIMITS) -> Relaxation:
     Parameters
     ----------
     program
-        The program.
+        The program; integrality is ignored.
     limits
         ``iterations`` limits the interior-point method. Default: 200 iterations.
 

@@ -43,7 +43,7 @@ def solve(
     Parameters
     ----------
     program
-        The program.
+        The linear or mixed-integer program.
     limits
         ``nodes`` limits branch and bound, which also ends at the relative gap ``gap``;
         ``iterations`` limits the simplex method on a pure LP. Default: none, so that the solver

@@ -33,7 +33,8 @@ class Columns:
         Pod, station and column x of each pair of pod and station.
     order, at, slot, prospect
         Order, station, column y and column g of each *place* (pair of an order and a station to
-        which it may be assigned); `prospect` is empty if prospects are not rewarded.
+        which it may be assigned); `prospect` is empty if prospects (see `program`) are not
+        rewarded.
     line, place, cover
         Line, index of the place, and column z of each pair of a line and a place of its order at
         which the line could be covered. In `Variant.WHOLE`, z is the column y of the place.

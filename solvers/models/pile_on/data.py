@@ -3,7 +3,7 @@ r"""The input of the pile-on models: one snapshot of orders, pods, stations and 
 Sets: stations s, orders o with lines l (SKU k(l), units q_l), pods p with stock a_pk, robots r.
 Earlier decisions are part of the data: the open demand of orders already at stations, inbound pods
 (pods that are already assigned to a station), and robots that carry or fetch a pod. The stock of
-the inbound pods of station s, written :math:`p \to s`, first serves the open demand there:
+the inbound pods of station s (the pods with :math:`p \to s`) first serves the open demand there:
 :math:`open_{sk}` units of SKU k. A surplus or a shortage remains:
 
 .. math::

@@ -55,7 +55,7 @@ class Offers:
 
     @classmethod
     def of(cls, data: PileOn) -> Offers:
-        """Return the pairs of an input."""
+        """Return the pairs of a pod and a line in an input."""
         pod, line = np.nonzero(data.stock[:, data.line_sku])
         order = data.line_order[line]
         new = (np.diff(pod, prepend=-1) != 0) | (np.diff(order, prepend=-1) != 0)

@@ -254,7 +254,7 @@ class Programme:
         )
 
     def name(self, names: Names) -> None:
-        """Enter the name and the meaning of each column in `names`."""
+        """Enter in `names` the name and the meaning of each column."""
         blocks: tuple[tuple[str, str, str, dict[Any, int]], ...] = (
             ("visit", "svp", "visit {v} of station {s} by pod {p}", self._y),
             ("serve", "lsv", "line_visit[{l}] = {v}", self._z),

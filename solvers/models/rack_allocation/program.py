@@ -1,4 +1,4 @@
-r"""The integer program.
+r"""Rack allocation as an integer program.
 
 Two additions to the program of the module `data` make its relaxation tighter without cutting off
 any allocation. No station needs more of SKU k than the sum :math:`d_{sk}` of the :math:`C_s`

@@ -1,4 +1,4 @@
-r"""The integer program.
+r"""Replenishment as an integer program.
 
 Bundles go to pods (x) or are left (l), pods go to stations (y), and the load of a pod counts at its
 station (w):

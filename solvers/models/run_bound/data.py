@@ -72,9 +72,9 @@ class PickStations:
 
     @property
     def change_s(self) -> NDArray[np.float64]:
-        """Least time from the last pick of a visit to the first pick of the next visit.
+        """Least time from the last pick of a visit to the first of the next, shape (S,), in s.
 
-        Both picks are counted from their start. Shape (S,), in s.
+        It is measured from the start of the one pick to the start of the other.
         """
         return np.maximum(self.unit_transfer_s, self.unit_pick_s + self.changeover_s)
 
