@@ -255,7 +255,7 @@ def differences(
 ) -> Table:
     """Return differences (arm minus baseline), with p values corrected by Holm's method.
 
-    The differences are paired by seed, unless the arms were simulated without common random numbers.
+    Differences are paired by seed, unless the arms were simulated without common random numbers.
     """
     from rmfs.experiments.statistics.intervals import independent
     from rmfs.experiments.statistics.paired import holm

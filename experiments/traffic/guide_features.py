@@ -40,7 +40,7 @@ FEW = 5.0
 def features(
     layout: Layout, edges: pd.DataFrame, heat: pd.DataFrame
 ) -> dict[str, NDArray[np.float64]]:
-    """Return the features of all edges, by name, each of shape (M,), as in `layout.edge_target`.
+    """Return, by name, the features of all edges, shape (M,), in the order of `layout.edge_target`.
 
     Parameters
     ----------

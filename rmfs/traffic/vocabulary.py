@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Step(IntEnum):
-    """Kinds of commands to a robot: drive to a waypoint, lift or set down a pod, go to a station."""
+    """Kinds of commands to robots: drive to a waypoint, lift or set down a pod, go to a station."""
 
     DRIVE = 0
     LIFT = 1

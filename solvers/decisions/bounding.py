@@ -44,7 +44,8 @@ def bounds(
     """Yield the name of each method with its bound; methods without a bound are left out.
 
     A question has no solution if its bound is inf (-inf if the objective is maximised). The exact
-    search is left out, too, if the solver refuses the integer program, for example because of huge costs.
+    search is left out, too, if the solver refuses the integer program, for example because costs
+    are huge.
 
     Parameters
     ----------

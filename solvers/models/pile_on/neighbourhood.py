@@ -1,9 +1,9 @@
 """A search for large inputs: re-optimises two stations at a time, while all others stay fixed.
 
 The search starts from a decision and re-optimises, in rounds, pairs of stations that are close to
-each other. For each pair, CP-SAT decides anew on the orders placed at the pair, the waiting orders, and
-the pods and robots that no other station uses. The result is never worse than the start, and
-`deterministic_s` limits the total work.
+each other. For each pair, CP-SAT decides anew on the orders placed at the pair, the waiting
+orders, and the pods and robots that no other station uses. The result is never worse than the
+start, and `deterministic_s` limits the total work.
 """
 
 from __future__ import annotations
