@@ -63,7 +63,7 @@ class WorkShifts(StationActivation[WorkShiftsParameters]):
     parameters_model = WorkShiftsParameters
 
     def decide(self) -> Iterator[SwitchStation]:
-        """Yield, for each station not in the state of the present shift, a decision to switch it."""
+        """Yield, for each station whose state is not that of the shift, a decision to switch it."""
         on = self._present()[0]
         for station in self.view.stations:
             if station.active != on:
