@@ -83,10 +83,10 @@ class CheckReport:
     findings
         Every violation, in order of time.
     pieces
-        Number of motions; each is a row of the trace.
+        Number of motions checked; each is a row of the trace.
     pairs
-        Number of pairs of pieces that were examined for an overlap of two robots, because they are
-        close in time and space. A piece is a part of a motion with constant acceleration.
+        Number of pairs of sections of motions that were examined for an overlap of two robots,
+        because they are close in time and space. Acceleration is constant in a section.
     """
 
     findings: list[Finding] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""Check of pile-on: assignment of orders to slots, pods to stations, and robots to pods."""
+"""Check of the family `pile-on`, which assigns orders to slots, pods to stations, robots to pods."""
 
 from __future__ import annotations
 
