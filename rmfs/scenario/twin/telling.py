@@ -1,4 +1,4 @@
-"""Output of a twin: a table of the main figures for the terminal, and files."""
+"""Output of a synthetic twin of an order file: a table of the main figures, and files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Check of the family `pile-on`, which assigns orders to slots, pods to stations, robots to pods."""
+"""Check of the family `pile-on`: orders get slots, pods get stations, and robots get pods."""
 
 from __future__ import annotations
 
