@@ -111,26 +111,26 @@ class TestCongestion:
         expected = 50.0 * kept / (80 * kept + DOUBT)
         assert tracker.delay_s.flat[tracker.regions.of[2]] == pytest.approx(expected)
 
-    def test_counts_that_start_again_are_not_subtracted(self) -> None:
-        """As at the end of the warm-up."""
+    def _started_again(self, visits: int, waiting_s: float) -> tuple[Counted, Congestion]:
+        """Counts at waypoint 2 that the tracker has read, and that were then set to 0."""
         counted = Counted()
         tracker = counted.situation.view.trackers.get(Congestion)
-        counted.pass_by(2, visits=80, waiting_s=50.0)
+        counted.pass_by(2, visits=visits, waiting_s=waiting_s)
         counted.wait(60.0)
         tracker.delay_s  # noqa: B018
         counted.visits[:], counted.waiting_s[:] = 0, 0.0
+        return counted, tracker
+
+    def test_counts_that_start_again_are_not_subtracted(self) -> None:
+        """As at the end of the warm-up."""
+        counted, tracker = self._started_again(visits=80, waiting_s=50.0)
         counted.pass_by(2, visits=10, waiting_s=30.0)
         counted.wait(60.0)
         expected = (50.0 * KEPT + 30.0) / (80 * KEPT + 10 + DOUBT)
         assert tracker.delay_s.flat[tracker.regions.of[2]] == pytest.approx(expected)
 
     def test_even_if_more_was_counted_since_than_before(self) -> None:
-        counted = Counted()
-        tracker = counted.situation.view.trackers.get(Congestion)
-        counted.pass_by(2, visits=10, waiting_s=30.0)
-        counted.wait(60.0)
-        tracker.delay_s  # noqa: B018
-        counted.visits[:], counted.waiting_s[:] = 0, 0.0
+        counted, tracker = self._started_again(visits=10, waiting_s=30.0)
         counted.pass_by(7, visits=80, waiting_s=50.0)
         counted.wait(60.0)
         delay_s = tracker.delay_s.flat
