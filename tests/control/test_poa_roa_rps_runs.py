@@ -10,6 +10,7 @@ from ledger import Ledger
 
 from rmfs import layout, scenario
 from rmfs.control import registry
+from rmfs.control.poa.fast_lane import FastLane
 from rmfs.control.problems import Problem
 from rmfs.simulation.kernel import Kernel
 
@@ -73,3 +74,27 @@ def test_stock_and_requests_are_conserved(warehouse, problem, table) -> None:
     world = simulation.world
     assert world.units_picked > 20
     assert world.bundles_stored > 0
+
+
+def test_the_fast_lane_misses_no_order(warehouse, monkeypatch) -> None:
+    """Whenever it is asked, it names each station whose pod can complete an order."""
+    promising = FastLane.promising
+    found: set[tuple[int, int]] = set()
+
+    def checked(lane: FastLane) -> list[int]:
+        named, view = promising(lane), lane._view
+        for station in view.pick_stations:
+            if station.robot < 0 or not station.active or not station.free_slots:
+                assert station.index not in named
+                continue
+            stock = view.inventory.available[:, view.robots[station.robot].pod]
+            for order in view.orders.orders.values():
+                if all(stock[line.sku] >= line.units for line in order.lines):
+                    assert station.index in named
+                    found.add((station.index, order.index))
+        return named
+
+    monkeypatch.setattr(FastLane, "promising", checked)
+    work = scenario.load("default", [(["duration_s"], 600.0), (["warmup_s"], 0.0)])
+    Kernel(warehouse, work, rules(poa={"name": "pod-match"})).run()
+    assert len({order for _, order in found}) > 20

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rmfs.control.decisions import AssignOrder
 from rmfs.world.news import Follower
 
@@ -26,20 +28,12 @@ class _Visit:
     ----------
     number
         Number of the visit at the station.
-    newest
-        Index of the newest order that was checked.
     fitting
         Orders that the pod can complete, by index.
     """
 
     number: int
-    newest: int
     fitting: dict[int, Order] = field(default_factory=dict)
-
-    def begin(self, number: int, newest: int) -> None:
-        """Reset the state for another pod."""
-        self.number, self.newest = number, newest
-        self.fitting.clear()
 
 
 class FastLane:
@@ -57,11 +51,16 @@ class FastLane:
     def __init__(self, view: View, rank: Callable[[Order], tuple[float, int]]) -> None:
         self._view = view
         self._rank = rank
-        self._visits = [_Visit(-1, -1) for _ in view.pick_stations]
+        stations = len(view.pick_stations)
+        self._visits = [_Visit(-1) for _ in range(stations)]
         self._news = Follower(view.slot_news)
         self._serving: set[int] = set()
         self._hopeful: set[int] = set()
         self._newest = -1
+        # by station: its pod, the newest order that was checked, and whether this is `_newest`
+        self._pods = np.zeros(stations, np.intp)
+        self._checked = np.full(stations, -1)
+        self._is_up_to_date = np.zeros(stations, np.bool_)
 
     def decide(self, stations: list[int] | None = None) -> Iterator[AssignOrder]:
         """Yield assignments while the pod at a station with a free slot can complete an order.
@@ -80,50 +79,79 @@ class FastLane:
                 if order is None:
                     break
                 yield AssignOrder(order, index)
+            if not fitting:
+                self._hopeful.discard(index)
 
     def promising(self) -> list[int]:
         """Return the numbers of stations with a free slot and a pod that may complete an order.
 
-        The numbers are ascending. If there are new orders since the last call, all stations with a
-        free slot are checked; otherwise, only those that have changed.
+        The numbers are ascending. New orders are checked for all stations at once; beyond that,
+        only stations that have changed are checked.
         """
         newest = next(reversed(self._view.orders.orders), -1)
-        changed, serving = self._news.take(), self._serving
+        changed = self._news.take()
+        if changed:
+            self._update_serving(changed)
+        if newest != self._newest:
+            self._look_at_arrivals(newest)
+        if changed:
+            new: dict[int, list[Order]] = {}
+            for index in changed & self._serving:
+                self._look(index, newest, new)
+        if not self._hopeful:
+            return []
+        serving, visits = self._serving, self._visits
+        return sorted(i for i in self._hopeful if i in serving and visits[i].fitting)
+
+    def _update_serving(self, changed: set[int]) -> None:
+        """Update which stations have a pod and a free slot."""
+        serving, stations = self._serving, self._view.pick_stations
         for index in changed:
-            station = self._view.pick_stations[index]
+            station = stations[index]
+            self._is_up_to_date[index] = False
             if station.robot >= 0 and station.active and station.free_slots > 0:
                 serving.add(index)
             else:
                 serving.discard(index)
-        if newest == self._newest and not changed and not self._hopeful:
-            return []
-        new: dict[int, list[Order]] = {}
-        for index in serving if newest != self._newest else changed & serving:
-            self._look(index, newest, new)
+
+    def _look_at_arrivals(self, newest: int) -> None:
+        """Find new orders that pods can complete at the stations that are up to date."""
+        available, checked = self._view.inventory.available, self._checked
+        anywhere = bool(self._is_up_to_date.any())
+        for order in self._view.orders.after(self._newest) if anywhere else []:
+            fits = self._is_up_to_date & (checked < order.index)
+            for line in order.lines:
+                fits &= available[line.sku].take(self._pods) >= line.units
+            for index in fits.nonzero()[0].tolist():
+                self._visits[index].fitting[order.index] = order
+                self._hopeful.add(index)
+        np.maximum(checked, newest, out=checked, where=self._is_up_to_date)
         self._newest = newest
-        if not self._hopeful:
-            return []
-        return sorted(i for i in self._hopeful if i in serving and self._visits[i].fitting)
 
     def _look(self, index: int, newest: int, new: dict[int, list[Order]]) -> None:
-        """Find orders that the pod at a station can complete, among all orders or the new ones.
+        """Bring a station up to date: find orders that its pod can complete.
+
+        All orders are checked if the pod is new, otherwise only those newer than the last check.
 
         Parameters
         ----------
         new
             Orders newer than a given index, by that index; missing entries are added.
         """
-        view, visit = self._view, self._visits[index]
+        view, visit, checked = self._view, self._visits[index], self._checked.item(index)
         station = view.pick_stations[index]
+        pod = view.robots[station.robot].pod
         if visit.number != station.visits:
-            visit.begin(station.visits, newest)
-            self._look_at_all(visit, view.robots[station.robot].pod)
-        elif visit.newest < newest:
-            orders = new.get(visit.newest)
+            visit.number, checked = station.visits, newest
+            visit.fitting.clear()
+            self._look_at_all(visit, pod)
+        elif checked < newest:
+            orders = new.get(checked)
             if orders is None:
-                orders = new[visit.newest] = view.orders.after(visit.newest)
-            self._look_at_new(visit, view.robots[station.robot].pod, orders)
-            visit.newest = newest
+                orders = new[checked] = view.orders.after(checked)
+            self._look_at_new(visit, pod, orders)
+            checked = newest
+        self._pods[index], self._checked[index], self._is_up_to_date[index] = pod, checked, True
         if visit.fitting:
             self._hopeful.add(index)
         else:

@@ -231,7 +231,7 @@ class StationTeams(TaskAllocation[P]):
             return
         everybody = self.looks_elsewhere() or self.may_be_moved(consult)
         news = set() if everybody else self._stations_with_news()
-        if not everybody and news.isdisjoint(map(self._station_of.__getitem__, resting)):
+        if not everybody and not news:
             return
         for robot in list(resting.values()):
             if not everybody and self._station_of[robot.index] not in news:
@@ -244,14 +244,18 @@ class StationTeams(TaskAllocation[P]):
                         news = self._stations_with_news()
 
     def _stations_with_news(self) -> set[int]:
-        """Return the stations with open work that has changed since no pod was found for it."""
+        """Return the stations of robots at rest that have new work.
+
+        Work is new if it has changed since no pod was found for it.
+        """
         view, searched, with_work = self.view, self._searched, self._with_work
         for station in self._work_news.take():
             if view.has_open_work(station):
                 with_work.add(station)
             else:
                 with_work.discard(station)
-        return {s for s in with_work if searched[s] != view.work_version(s)}
+        stations = with_work.intersection(map(self._station_of.__getitem__, view.resting))
+        return {s for s in stations if searched[s] != view.work_version(s)}
 
     # --- who works for which station ------------------------------------------------------------
 
