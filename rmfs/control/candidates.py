@@ -77,7 +77,8 @@ def _orders(view: View) -> Candidates:
     wanted: NDArray[Any] = np.asarray(units.sum(axis=1))
     spare = view.inventory.inbound[target[:, None], sku] - view.need[target[:, None], sku]
     here: NDArray[Any] = np.clip(spare, 0, units).sum(axis=1)
-    served: NDArray[np.bool_] = view.inventory.free_stock[sku] >= units
+    # unused columns have 0 units of SKU 0, of which the free stock may be negative
+    served: NDArray[np.bool_] = (view.inventory.free_stock[sku] >= units) | (units == 0)
     columns: Columns = {
         "order": np.array([order.index for order in orders], np.int64),
         "station": target,

@@ -7,9 +7,13 @@ from assigning import assign as decide
 from assigning import stocked
 from doubles import Situation
 
+from rmfs.control.candidates import candidates_for
 from rmfs.control.poa.foresight import Foresight
+from rmfs.control.poa.linear import Linear
 from rmfs.control.poa.lines_in_common import LinesInCommon
 from rmfs.control.poa.wave import Wave
+from rmfs.control.problems import Problem
+from rmfs.control.questions import Question
 
 
 @pytest.fixture
@@ -58,6 +62,22 @@ class TestLinesInCommon:
         for _ in range(9):
             situation.order(s1=1)
         assert len(decide(situation, situation.make(LinesInCommon, fast_lane=True))) == 6
+
+
+class TestLinear:
+    def test_orders_without_a_short_sku_are_in_stock(self, situation) -> None:
+        """Station 0 wants 12 units of SKU 0, of which there are 10: 2 are missing.
+
+        Order 1 (SKU 1) and order 2 (SKUs 1 and 2) can be served all the same; order 3 cannot.
+        """
+        situation.assigned(station=0, s0=12)
+        for units in ({"s1": 1}, {"s1": 1, "s2": 1}, {"s0": 1}):
+            situation.order(**units)
+        found = candidates_for(situation.view, Question(Problem.POA, "turn")).columns
+        assert found["order"].tolist() == [1, 1, 2, 2, 3, 3]
+        assert found["in_stock"].tolist() == [1, 1, 1, 1, 0, 0]
+        made = decide(situation, situation.make(Linear, fast_lane=False))
+        assert sorted(order for order, _ in made) == [1, 2]
 
 
 class TestForesight:
