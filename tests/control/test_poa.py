@@ -9,6 +9,7 @@ from doubles import Situation, small_layout
 
 from rmfs.control.poa.order_rules import RandomOrder
 from rmfs.control.poa.pod_match import PodMatch
+from rmfs.control.problems import Trigger
 
 
 @pytest.fixture
@@ -74,6 +75,22 @@ class TestPodMatch:
         for _ in range(8):
             situation.order(s0=1)
         assert len(decide(situation, situation.make(PodMatch))) == 6
+
+    def test_the_fast_lane_takes_an_order_that_has_lost_units(self, situation) -> None:
+        """Pod 0 stands at station 0, and only the slots kept for the fast lane are free.
+
+        The order also wants a unit of SKU 4, which no pod has: it fits only after it was cut.
+        """
+        controller = situation.make(PodMatch)
+        situation.carry(robot=0, pod=0, station=0)
+        order = situation.order(s0=1, s4=1)
+        for station in (0, 1):
+            for _ in range(3):
+                situation.assigned(station=station, s1=1)
+        assert decide(situation, controller) == []
+        situation.world.cut_order(order, {0: 1})
+        controller.hear(Trigger.ORDER_CUT, order)
+        assert decide(situation, controller) == [(order.index, 0)]
 
     def test_a_station_with_a_single_slot_uses_it(self) -> None:
         situation = Situation(small_layout(slots=1))

@@ -22,7 +22,7 @@ class _Visit:
     """State of one pod's visit to a station.
 
     A pod that is being served only loses units, so an order that it cannot complete need not be
-    checked again during the visit.
+    checked again during the visit, unless the order itself loses units (`FastLane.cut`).
 
     Attributes
     ----------
@@ -127,6 +127,16 @@ class FastLane:
                 self._hopeful.add(index)
         np.maximum(checked, newest, out=checked, where=self._is_up_to_date)
         self._newest = newest
+
+    def cut(self, order: Order) -> None:
+        """Check an order of the backlog again, since it has lost units."""
+        view = self._view
+        for index, visit in enumerate(self._visits):
+            station = view.pick_stations[index]
+            if station.robot >= 0 and visit.number == station.visits:
+                self._look_at_new(visit, view.robots[station.robot].pod, [order])
+                if visit.fitting:
+                    self._hopeful.add(index)
 
     def _look(self, index: int, newest: int, new: dict[int, list[Order]]) -> None:
         """Bring a station up to date: find orders that its pod can complete.

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rmfs.control.base import Parameters
 from rmfs.control.poa import PickOrderAssignment
 from rmfs.control.poa.fast_lane import FastLane
 from rmfs.control.poa.ties import TieBreaker, order_rank
+from rmfs.control.problems import Trigger
 from rmfs.world.news import Follower
 
 if TYPE_CHECKING:
@@ -46,6 +47,8 @@ class Filling(PickOrderAssignment[P]):
     at stations need, enough units of each of the order's SKUs are available on the pods.
     """
 
+    hears = frozenset({Trigger.ORDER_CUT})
+
     def __init__(self, parameters: P, view: View, rng: np.random.Generator) -> None:
         super().__init__(parameters, view, rng)
         self._lane: FastLane | None = None
@@ -56,6 +59,11 @@ class Filling(PickOrderAssignment[P]):
         ]
         self._news = Follower(view.slot_news)
         self._to_fill: set[int] = set()
+
+    def hear(self, trigger: Trigger, subject: Any) -> None:
+        """Let the fast lane check an order that has lost units."""
+        if self._lane is not None:
+            self._lane.cut(subject)
 
     @abstractmethod
     def next_assignment(self, stations: list[PickStation]) -> AssignOrder | None:
