@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from doubles import Situation
 
 import rmfs
+from rmfs.control.ca.by_demand import ByDemand
 from rmfs.control.ca.levels import ByLevel
 from rmfs.control.ca.opportunity import Opportunity
 from rmfs.control.decisions import Charge, Unplug
-from rmfs.control.problems import Problem
+from rmfs.control.problems import Problem, Trigger
 from rmfs.control.registry import built_in, solver_backed
 from rmfs.control.ta.balanced import Balanced
 from rmfs.errors import InputError
@@ -145,6 +147,20 @@ def test_places_are_handed_over_to_robots_in_the_queue_only(monkeypatch):
     )
     assert len(waiting) > 5
     assert all(waiting)
+
+
+def test_orders_that_are_there_at_the_start_are_not_arriving():
+    """50 orders wait at the start; then one arrives every 10 s, until demand falls at 300 s."""
+    situation = Situation()
+    rule = situation.make(ByDemand, window_s=100.0)
+    calm = []
+    for at_s in [0.0] * 50 + [float(second) for second in range(10, 301, 10)]:
+        situation.world.now_s = at_s
+        rule.hear(Trigger.NEW_ORDER, situation.order(s0=1))
+        calm.append(rule.is_calm())
+    assert not any(calm)
+    situation.world.now_s = 350.0
+    assert rule.is_calm()
 
 
 def test_copies_and_saved_runs_go_on_alike(tmp_path):

@@ -31,7 +31,8 @@ class ByDemandParameters(LevelParameters):
     """Length, in seconds, of the most recent period in which arriving orders are counted."""
     calm_share: Annotated[float, pydantic.Field(gt=0, allow_inf_nan=False)] = 0.8
     """Demand counts as low if the rate of arriving orders in the most recent period (`window_s`) is
-    below this share of the mean rate since the rule was installed."""
+    below this share of the mean rate since the rule was installed. Orders that are there at the
+    start of the run do not count as arriving."""
 
     @pydantic.model_validator(mode="after")
     def _calm_in_order(self) -> ByDemandParameters:
@@ -61,7 +62,9 @@ class ByDemand(ByLevel[ByDemandParameters]):
         self._count = 0
 
     def hear(self, trigger: Trigger, subject: Any) -> None:
-        """Count an order."""
+        """Count an order, unless it is there from the start."""
+        if self.view.now_s <= self._begun_s:
+            return
         self._arrivals.append(self.view.now_s)
         self._count += 1
 
