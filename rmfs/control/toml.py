@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from math import isinf
 from typing import TYPE_CHECKING, Any
 
 from rmfs.control.settings import FORMAT
@@ -42,5 +43,7 @@ def _value(value: Any) -> str:
         return "{ " + ", ".join(f"{key} = {_value(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(_value(item) for item in value) + "]"
-    # numbers, strings and truth values are written in TOML as in JSON
-    return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, float) and isinf(value):
+        return str(value)
+    # a JSON value is a TOML value, but for a character that JSON leaves as it is
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tomllib
+
 import pytest
 from typer.testing import CliRunner
 
@@ -54,6 +56,13 @@ def test_what_is_shown_can_be_read_again(tmp_path) -> None:
         file = tmp_path / f"{name}.toml"
         file.write_text(to_toml(given))
         assert control.load(file) == given
+
+
+def test_values_that_toml_writes_in_another_way_than_json_are_read_again() -> None:
+    rps = {"name": "emptiest", "buffer_timeout_s": float("inf")}
+    given = settings({**HEAD, "description": "\x7f", "rps": rps})
+    read = settings(tomllib.loads(to_toml(given)))
+    assert (read.choices, read.description) == (given.choices, given.description)
 
 
 @pytest.mark.parametrize(
