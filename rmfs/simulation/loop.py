@@ -76,7 +76,8 @@ class Loop:
     end_s: float
 
     def __init__(self, dispatch: Dispatch) -> None:
-        self._end_us = us_at(self.end_s)
+        # to the nearest microsecond, as in files: a sum of two times may be slightly too large
+        self._end_us = round(self.end_s * 1e6)
         self._moved_us = 0
         self._begun = self._ended = False
         self.wall_s = 0.0
@@ -171,7 +172,7 @@ class Loop:
         """
         if not time_s > -inf:
             raise InputError(f"time_s {time_s}: must be a time in s, or inf for the end of the run")
-        return self._go_on(us_at(min(time_s, self.end_s)))
+        return self._go_on(min(us_at(min(time_s, self.end_s)), self._end_us))
 
     def step(self) -> Decision | None:
         """Simulate up to the next decision that is made outside the simulation.
@@ -191,7 +192,7 @@ class Loop:
             if self.warmup_s == 0:
                 self._end_warmup()
             else:
-                self.agenda.at(us_at(self.warmup_s), self._end_warmup, LAST)
+                self.agenda.at(round(self.warmup_s * 1e6), self._end_warmup, LAST)
         agenda, end_us = self.agenda, until_us
         if end_us < agenda.now_us:
             return self.decision

@@ -113,6 +113,19 @@ def test_the_warm_up_and_the_samples() -> None:
     assert calls.calls == [("warm-up", 30.0), ("sample", 90.0), ("sample", 150.0), ("end", 180.0)]
 
 
+@pytest.mark.parametrize("stepwise", [False, True])
+def test_a_run_ends_at_the_nearest_microsecond(stepwise) -> None:
+    # in floating-point numbers, 424.4 + 600 is slightly more than 1024.4
+    work = scenario.load("basic", [(["duration_s"], 600.0), (["warmup_s"], 424.4)])
+    simulation = Kernel(layout.load("basic"), work, control.load("default"))
+    if stepwise:
+        simulation.run_until(1024.4)
+    else:
+        simulation.run()
+    assert simulation.ended
+    assert simulation.now_us == 1_024_400_000
+
+
 class TestSimulate:
     def test_from_names(self) -> None:
         told: list[tuple[float, float]] = []
