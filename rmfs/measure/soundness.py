@@ -146,9 +146,12 @@ def require_events(
             "station": (-1, len(layout.stations) - 1),
             "sku": (-1, skus - 1),
             "order": (-1, most),
-            "units": (0, most),
+            "units": (-most, most),
         },
     )
+    # a robot draws energy even when its battery is empty, until it is rescued
+    negative = (events["units"] < 0) & (events["kind"] != "battery-level")
+    _refuse(path, negative.to_numpy(), "units must be from 0 on, except in a battery-level")
     times = events["time_us"].to_numpy()
     _refuse(
         path, np.append(False, times[1:] < times[:-1]), "time_us is less than in the row before"

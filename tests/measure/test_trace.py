@@ -124,3 +124,15 @@ def test_following_a_trace_gives_the_whole_of_it() -> None:
     followed = followed.sort_values(["robot", "t0_us"])
     whole = joined_holds({name: followed[name].to_numpy() for name in followed})
     pd.testing.assert_frame_equal(pd.DataFrame(whole), pd.DataFrame(traffic.trace()))
+
+
+def test_the_trace_of_a_run_with_empty_batteries_is_read(tmp_path: Path) -> None:
+    given = {
+        "scenario.duration_s": 300.0,
+        "scenario.energy.battery.capacity_wh": 2.0,
+        "scenario.energy.inductive.power_w": 50.0,
+    }
+    run = rmfs.simulate("small", "small", "default", set=given, trace=True)
+    _, _, events = run.save(tmp_path / "run").replayed()
+    levels = events["units"][events["kind"] == "battery-level"]
+    assert levels.min() < 0
