@@ -188,6 +188,7 @@ class LiveRun:
             title=self._title,
             details=news.header["details"],
             sku_names=simulation.world.skus.names,
+            pickers=simulation.scenario.pickers is not None,
         )
         return pack(
             {**header, "live": news.header},

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rmfs.layout import colours
-from rmfs.layout.kinds import TASK_COLOURS
+from rmfs.layout.kinds import PICK, TASK_COLOURS
 from rmfs.measure.events import KINDS
 from rmfs.measure.trace import TRACE_COLUMNS
 from rmfs.view.container import pack
@@ -56,6 +56,7 @@ def of_run(folder: RunFolder) -> bytes:
         title=folder.path.resolve().name,
         details=detail.categories.tolist(),
         sku_names=skus["name"].astype(str).tolist(),
+        pickers=_has_pickers(told["scenario"]),
     )
     return pack(
         header,
@@ -77,6 +78,7 @@ def head(
     title: str,
     details: list[str],
     sku_names: Sequence[str] = (),
+    pickers: bool = False,
 ) -> dict[str, Any]:
     """Return the header of a scene, with its texts and scalar values.
 
@@ -86,6 +88,9 @@ def head(
         The texts to which the numbers in the column `detail` of the events refer.
     sku_names
         Names of all SKUs; empty if SKUs have only numbers.
+    pickers
+        Whether the times of units depend on pickers. If so, `transfer_s` of pick stations is 0: the
+        page then shows no idle share, which it would compute from a constant time.
     """
     return {
         "title": title,
@@ -103,7 +108,9 @@ def head(
                 "queue": [int(place) for place in station.queue],
                 "radius_m": station.radius_m,
                 "order_slots": getattr(station, "order_slots", 0),
-                "transfer_s": station.kind.busy_s(station),
+                "transfer_s": 0.0
+                if pickers and station.kind is PICK
+                else station.kind.busy_s(station),
             }
             for station in layout.stations
         ],
@@ -124,6 +131,12 @@ def head(
             "load": colours.LOADS,
         },
     }
+
+
+def _has_pickers(scenario: Mapping[str, Any]) -> bool:
+    """Return whether the entry `scenario` of a `run.json` has a table `pickers`."""
+    parameters = scenario.get("parameters")
+    return isinstance(parameters, dict) and parameters.get("pickers") is not None
 
 
 def _told_names(names: Sequence[str]) -> list[str]:

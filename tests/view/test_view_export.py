@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
+import rmfs
 from rmfs.cli import main
 from rmfs.measure import RunFolder
 from rmfs.view import scene
+from rmfs.view.container import unpack
 from rmfs.view.export import export
 
 
@@ -40,6 +42,19 @@ def test_the_same_run_gives_the_same_file(runs: list[RunFolder], tmp_path: Path)
     export(runs[:1], tmp_path / "a.html")
     export(runs[:1], tmp_path / "b.html")
     assert (tmp_path / "a.html").read_bytes() == (tmp_path / "b.html").read_bytes()
+
+
+@pytest.mark.parametrize("speeds", [None, [0.5]])
+def test_with_pickers_no_constant_time_per_unit_is_told(
+    tmp_path: Path, speeds: list[float] | None
+) -> None:
+    given = {"scenario.duration_s": 60.0}
+    more = {} if speeds is None else {"scenario.pickers.speeds": speeds}
+    run = rmfs.simulate("small", "small", "default", set=given | more, trace=True)
+    header, _ = unpack(scene.of_run(run.save(tmp_path / "run")))
+    for told, station in zip(header["stations"], run.layout.stations, strict=True):
+        constant = speeds is None or told["kind"] != "pick"
+        assert told["transfer_s"] == (station.kind.busy_s(station) if constant else 0.0)
 
 
 def test_what_is_wrong_is_said_in_one_line(
