@@ -48,6 +48,25 @@ def test_every_order_counts_once(packing):
     assert 0 < footprint["on_time_urgent_share"] < 1
 
 
+@pytest.mark.parametrize(("urgent_s", "ordinary_s"), [(700.0, 240.0), (400.0, 400.0)])
+def test_urgent_orders_need_not_be_due_sooner(urgent_s, ordinary_s):
+    offsets = {"urgent_offset_s": urgent_s, "ordinary_offset_s": ordinary_s}
+    given = SHORT | {"scenario.orders.due": DUE | offsets}
+    run = rmfs.simulate("small", "small-arrivals", "sequ", seed=1, set=given)
+    rows = run.table("priorities").set_index("priority")["orders_done"]
+    orders = run.table("orders")
+    orders = orders[orders["completed_s"].notna()]
+    offset_s = orders["due_s"] - orders["created_s"]
+    if urgent_s == ordinary_s:
+        # nothing tells which orders are urgent
+        assert rows.to_dict() == {"all": len(orders)}
+        assert np.isnan(run.footprint["on_time_urgent_share"])
+    else:
+        number = {"urgent": (offset_s > 500.0).sum(), "ordinary": (offset_s < 500.0).sum()}
+        assert rows.to_dict() == number
+        assert min(number.values()) > 0
+
+
 CLASSES = [
     {"name": "express", "share": 0.2, "offset_s": 240.0, "weight": 4.0},
     {"name": "prime", "share": 0.3, "offset_s": 500.0},

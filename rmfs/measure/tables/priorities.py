@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from rmfs.measure.tables.logs import Logs
+    from rmfs.scenario.due import Due
 
 _HAIR_S = 1e-6
 
@@ -26,7 +27,7 @@ PRIORITIES = (
         TEXT,
         "",
         'Name of the class of orders; "urgent" or "ordinary" if orders.due.mode = '
-        '"priority"; "all" if there are no classes',
+        '"priority" and their offsets differ; "all" if there are no classes',
     ),
     Column("weight", REAL, "", "Weight of the lateness of orders of the class"),
     Column("orders", INTEGER, "orders", "Orders done or cancelled, or overdue at the end"),
@@ -83,7 +84,7 @@ def class_names(logs: Logs) -> tuple[str, ...]:
     due = logs.recorder.due
     if isinstance(due, ClassesDue):
         return due.names
-    return ("urgent", "ordinary") if isinstance(due, PriorityDue) else ("all",)
+    return ("urgent", "ordinary") if _tells_urgent(due) else ("all",)
 
 
 def class_weights(logs: Logs) -> tuple[float, ...]:
@@ -132,10 +133,17 @@ def _classes(logs: Logs, frame: pd.DataFrame) -> NDArray[np.int64]:
     if isinstance(due, ClassesDue):
         every = logs.orders.set_index("order")["priority"]
         return every.reindex(frame["order"]).to_numpy(np.int64)
-    if isinstance(due, PriorityDue):
-        offset_s = (frame["due_s"] - frame["created_s"]).to_numpy()
-        return (offset_s > due.urgent_offset_s + _HAIR_S).astype(np.int64)
+    if isinstance(due, PriorityDue) and _tells_urgent(due):
+        later_s = (frame["due_s"] - frame["created_s"]).to_numpy() - due.urgent_offset_s
+        if due.ordinary_offset_s < due.urgent_offset_s:
+            later_s = -later_s
+        return (later_s > _HAIR_S).astype(np.int64)
     return np.zeros(len(frame), np.int64)
+
+
+def _tells_urgent(due: Due) -> bool:
+    """Return whether the offset of an order tells if it is urgent or ordinary."""
+    return isinstance(due, PriorityDue) and due.urgent_offset_s != due.ordinary_offset_s
 
 
 def _of(orders: pd.DataFrame) -> dict[str, Any]:
