@@ -12,7 +12,7 @@ from matplotlib import pyplot as plt
 from matplotlib.colors import LogNorm
 
 from rmfs.errors import InputError
-from rmfs.measure.plots import heat
+from rmfs.measure.plots import heat, warmup
 
 
 @pytest.fixture
@@ -65,3 +65,16 @@ def test_nothing_and_all_the_same(axes, visits):
 def test_an_unknown_count_is_named(axes):
     with pytest.raises(InputError, match="valid: visits, loaded_visits, pick_visits"):
         heat(counted([1]), axes, column="heat")
+
+
+def test_a_shorter_last_interval_does_not_change_the_proposed_warm_up(axes):
+    units = [0, 2, 5, 8, 10, *[11, 9, 10, 12, 8] * 7]
+    series = pd.DataFrame({"interval_s": 60.0, "units_picked": units})
+    series["time_s"] = series["interval_s"].cumsum()
+    longer = pd.concat([series[:-1], series[-1:].assign(interval_s=1.0, units_picked=1)])
+    whole = plt.figure().subplots()
+    warmup(series[:-1], whole)
+    warmup(longer, axes)
+    expected = whole.get_legend_handles_labels()[1]
+    assert axes.get_legend_handles_labels()[1] == expected
+    assert "MSER-5: 300 s" in expected

@@ -12,12 +12,16 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
+HAIR_S = 1e-6
+"""Tolerance for rounding errors in the length of an interval, in s."""
+
 
 def warmup(series: pd.DataFrame, ax: Axes, *, column: str = "units_picked") -> None:
     """Plot a rate in each minute, its moving average, and two proposals for the warm-up.
 
     One proposal is by MSER-5, the other by Welch's method (`rmfs.measure.warmup`). The series
-    starts after the run's own warm-up, so use a run with `warmup_s = 0`.
+    starts after the run's own warm-up, so use a run with `warmup_s = 0`. The last interval is left
+    out if it is shorter than the others, since its rate varies more.
 
     Parameters
     ----------
@@ -26,6 +30,8 @@ def warmup(series: pd.DataFrame, ax: Axes, *, column: str = "units_picked") -> N
     column
         Column with a count for each minute; the counts are plotted as rates per hour.
     """
+    if series["interval_s"].iloc[-1] < series["interval_s"].iloc[0] - HAIR_S:
+        series = series.iloc[:-1]
     rate = (series[column] / series["interval_s"] * 3600.0).to_numpy(float)
     time_h = series["time_s"].to_numpy() / 3600.0
     start_h = time_h[0] - float(series["interval_s"].iloc[0]) / 3600.0
