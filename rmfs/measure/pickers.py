@@ -50,4 +50,5 @@ class PickerLog:
         """Record the presence of the pickers who are still there at the end of the run."""
         for picker in self.staff.pickers if self.staff is not None else ():
             if picker.station >= 0:
-                self.presence.add(picker.index, picker.station, picker.since_s, time_s)
+                since_s = picker.since_s
+                self.presence.add(picker.index, picker.station, since_s, max(since_s, time_s))

@@ -48,7 +48,8 @@ class Picker:
     station
         Current station, or -1 while away.
     since_s
-        Time at which the picker came to the current or last station, in s.
+        Start of the present or last period at a station, in s. After a break that was shorter than
+        the rest of a unit, this is the end of the unit, up to which the previous period lasts.
     units
         Units picked since time zero.
     fatigue
@@ -145,7 +146,7 @@ class Staff:
     def come(self, picker: Picker, now_s: float) -> None:
         """Record that a picker has come to the station `picker.home`."""
         self.bring(picker, now_s)
-        picker.station, picker.since_s = picker.home, now_s
+        picker.station, picker.since_s = picker.home, max(now_s, picker.busy_until_s)
         self.at_station[picker.home] = picker
 
     def leave(self, picker: Picker, now_s: float) -> None:

@@ -108,6 +108,15 @@ def test_nobody_picks_in_a_break_or_in_another_shift(full):
     assert people["present_s"].to_numpy() == pytest.approx([800, 800, 400, 400], abs=90)
 
 
+def test_presence_counts_once_if_a_unit_lasts_longer_than_a_break():
+    roster = {"cycle_s": 100, "shifts_s": [[0, 100]], "breaks_s": [[50, 51]]}
+    run = simulate({"speeds": [0.2], "roster": roster}, duration_s=1150)
+    people = run.table("pickers")
+    assert (people["present_s"] <= 1150 + 1e-6).all()
+    assert (people["work_s"] <= people["present_s"] + 1e-6).all()
+    assert run.footprint["pickers_mean"] <= len(people)
+
+
 def test_robots_wait_out_a_night():
     """Nobody is there for hours, pods queue, and work goes on in the morning."""
     roster = {"cycle_s": 12000, "shifts_s": [[600, 1200]]}
