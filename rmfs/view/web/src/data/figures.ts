@@ -7,6 +7,7 @@ export interface Course {
   /** Length of a bin in microseconds; bin k ends at (k + 1) times that. */
   bin_us: number;
   unitsPerHour: number[];
+  /** Orders that wait for a station; one that is split waits until its first part has one. */
   backlog: number[];
   /** What is in the batteries in the mean of the robots at the end of each bin, in per cent. */
   charge: number[];
@@ -23,15 +24,21 @@ export function course(events: Events, robots: Robots, end_us: number): Course {
   const count = Math.max(Math.ceil(end_us / bin_us), 1);
   const picked = new Array<number>(count).fill(0);
   const joined = new Array<number>(count).fill(0);
+  const unassigned = new Set<number>();
   let late = 0;
-  for (const { time_us, kind, units } of events.all) {
+  for (const { time_us, kind, order, units } of events.all) {
     const bin = Math.min(Math.floor(time_us / bin_us), count - 1);
     if (kind === Kind.UNIT_PICKED) {
       picked[bin] += units;
-      if (time_us > end_us - bin_us) late += units;
+      if (time_us >= end_us - bin_us) late += units;
     }
-    if (kind === Kind.ORDER_CREATED) joined[bin]++;
-    else if (kind === Kind.ORDER_ASSIGNED) joined[bin]--;
+    if (kind === Kind.ORDER_CREATED) {
+      unassigned.add(order);
+      joined[bin]++;
+    } else if (kind === Kind.ORDER_ASSIGNED || kind === Kind.ORDER_CANCELLED) {
+      // further parts of a split order are assigned later
+      if (unassigned.delete(order)) joined[bin]--;
+    }
   }
   // the last bin is not over: its rate looks back as far as those of the others do
   picked[count - 1] = late;
