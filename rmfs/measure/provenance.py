@@ -27,6 +27,7 @@ from rmfs.sources import sources
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
+    from rmfs.control.choices import Choice
     from rmfs.layout.model import Layout
     from rmfs.measure.base import Measure
     from rmfs.measure.checker import CheckReport
@@ -50,14 +51,18 @@ PACKAGES = (
 )
 """Packages whose version is recorded: all dependencies, including solvers."""
 
-MARK = "+"
-"""Separator between the name of a set of controllers and their exchanges during the run."""
-
 KINDS: dict[str, instances.Kind] = {
     "layout": "layouts",
     "scenario": "scenarios",
     "controllers": "controllers",
 }
+
+
+def marks(interventions: Iterable[tuple[float, Choice]]) -> str:
+    """Return what is appended to the name of a set of controllers for exchanges during a run."""
+    return "".join(
+        f"+{choice.problem}={choice.name}@{time_s:.6f}s" for time_s, choice in interventions
+    )
 
 
 def describe(
@@ -74,7 +79,8 @@ def describe(
         names in `run`.
     """
     table = run.controllers.to_table()
-    names = [name.partition(MARK)[0] if run.interventions else name for name in run.names]
+    *names, controllers = run.names
+    names.append(controllers.removesuffix(marks(run.interventions)))
     given = dict(zip(KINDS, names, strict=True)) if inputs is None else dict(inputs)
     return {
         "layout": {

@@ -13,7 +13,7 @@ from rmfs.control.pp import planner_settings
 from rmfs.control.problems import Problem
 from rmfs.errors import InputError
 from rmfs.measure.measures import SHIPPED
-from rmfs.measure.provenance import MARK
+from rmfs.measure.provenance import marks
 from rmfs.measure.registry import find_all
 from rmfs.simulation import forking, saving
 from rmfs.simulation.checkpoints import resumed
@@ -294,15 +294,11 @@ events, streams, remark, allow_not_well_formed, traffic_maker
         idle = idle_rules(self.world, self.controller_set, statistics, self.end_s, outside)
         for told in idle:
             warnings.warn(told, IdleRuleWarning, stacklevel=2)
-        marks = "".join(
-            f"{MARK}{choice.problem}={choice.name}@{time_s:.6f}s"
-            for time_s, choice in self.interventions
-        )
         return Run(
             layout=self.layout,
             scenario=self.scenario,
             controllers=self.controllers,
-            names=(*self.names[:2], self.names[2] + marks),
+            names=(*self.names[:2], self.names[2] + marks(self.interventions)),
             overrides=self.inputs.overrides,
             notes=self.inputs.notes,
             seed=self.seed,

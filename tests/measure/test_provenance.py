@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 from dataclasses import replace
 
 from fake_run import layout
 
+import rmfs
+from rmfs import instances
+from rmfs.control.choices import choose
+from rmfs.control.problems import Problem
 from rmfs.measure import provenance
 
 
@@ -28,6 +33,20 @@ def test_a_users_file_is_named_with_its_path(tmp_path):
 def test_what_came_from_no_file_has_its_name_only():
     told = provenance.source("controllers", "made in python")
     assert told == {"name": "made in python", "file": None, "sha256": None}
+
+
+def test_a_plus_sign_in_a_name_is_kept_if_controllers_are_exchanged(tmp_path):
+    shutil.copy(instances.locate("scenarios", "small"), tmp_path / "peak+2.toml")
+    short = {"scenario.duration_s": 60.0}
+    simulation = rmfs.Simulation("small", tmp_path / "peak+2.toml", set=short)
+    simulation.run_until(30.0)
+    simulation.exchange(choose(Problem.PSA, {"name": "random"}, "exchange"))
+    simulation.run()
+    run = simulation.result()
+    assert run.names == ("small", "peak+2", "default+psa=random@30.000000s")
+    told = run.save(tmp_path / "run").parameters
+    names = [told[part]["name"] for part in ("layout", "scenario", "controllers")]
+    assert names == ["small", "peak+2", "default"]
 
 
 def test_a_digest_changes_with_any_value_and_only_then():
