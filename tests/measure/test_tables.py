@@ -282,3 +282,12 @@ def test_answers_are_kept_whole_warm_up_included(made):
     assert solution["order"].dtype == np.int64
     assert (solution["order"].tolist(), solution["share"]) == ([4, 2], 0.1)
     assert kept["solution"].tolist()[2:] == ["", ""]
+
+
+def test_a_question_at_the_end_of_the_warm_up_is_measured():
+    # in floating-point numbers, 16.1 x 1e6 is slightly more than 16,100,000
+    told = run()
+    told.recorder.start_s = 16.1
+    told.recorder.questions[0].requested_us = 16_100_000
+    asked = decisions(told)
+    assert asked["call"].dropna().tolist() == [0, 1, 2, 3]

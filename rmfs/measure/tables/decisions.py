@@ -282,7 +282,7 @@ def _by_problem(questions: list[Call], count: Callable[[Call], int]) -> Counter[
 
 def _measured(logs: Logs) -> list[Call]:
     """Return the questions asked in the measured time."""
-    return [call for call in logs.recorder.questions if call.requested_us >= logs.start_s * 1e6]
+    return [call for call in logs.recorder.questions if call.requested_us / 1e6 >= logs.start_s]
 
 
 def _questions(asked: list[Call]) -> dict[str, Any]:
