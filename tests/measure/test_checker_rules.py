@@ -258,6 +258,17 @@ def test_two_robots_do_not_ride_together():
     assert (finding.robots, finding.amount) == ((0, 1), 5.0)
 
 
+def test_a_row_that_takes_no_time_hides_no_shared_elevator():
+    layout = grid(5, 1, [2, 5, 7], tiers=2, elevator=2)
+    programs = (
+        lambda r: r.hold(30),
+        lambda r: r.hold(5).run(7).hold(10),
+        lambda r: r.hold(0).run(9).hold(20),
+    )
+    (finding,) = check(layout, drive(layout, *programs)).of(FindingKind.ELEVATOR_SHARED)
+    assert (finding.robots, finding.time_s) == ((0, 1), 9.0)
+
+
 def test_a_queue_place_holds_one_robot():
     layout = grid(5, 1, [0, 1], queue=(1,))
     report = check(layout, drive(layout, lambda r: r.run(1), lambda r: r.hold(9)))

@@ -43,15 +43,16 @@ def check(layout: Layout, trace: Trace) -> list[Finding]:
 def _shared(trace: Trace, resource: Index, kind: FindingKind) -> list[Finding]:
     """Find rows of different robots that hold the same resource at the same time.
 
-    Only neighbours in the order of start times are compared: if any two rows overlap, so do two
-    neighbours. Every shared use is therefore found, but not every pair of robots involved.
+    Rows that take no time are left out. Of the others, only neighbours in the order of start times
+    are compared: if any two rows overlap, so do two neighbours. Every shared use is therefore
+    found, but not every pair of robots involved.
 
     Parameters
     ----------
     resource
         Number of the resource that each row holds, or -1 for none; shape (K,).
     """
-    rows = np.flatnonzero(resource >= 0)
+    rows = np.flatnonzero((resource >= 0) & (trace.t1_us > trace.t0_us))
     rows = rows[np.lexsort((trace.t0_us[rows], resource[rows]))]
     one, other = rows[:-1], rows[1:]
     overlap_us = np.minimum(trace.t1_us[one], trace.t1_us[other]) - trace.t0_us[other]
