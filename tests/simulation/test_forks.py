@@ -40,6 +40,7 @@ DISTURBED = {
         {"controllers__ta": "swarm", "controllers__repositioning": "utility"},
         {"controllers__poa": "queue", "controllers__psa": "turnover"},
         {"controllers__poa": {"name": "pod-match", "fast_lane": True}},
+        {"scenario__skus__affinity": {"share": 0.5, "pairs": 200}},
     ],
 )
 def test_at_random_moments(given: dict[str, Any]) -> None:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rmfs.scenario.categorical import Categorical
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import NDArray
+
+MOST_KEPT = 1024
+"""Maximum number of samplers kept."""
 
 
 @dataclass(frozen=True)
@@ -49,24 +49,9 @@ class Affinity:
         for array in (self.first, self.second, self.weight):
             array.setflags(write=False)
 
-    def samplers(self, skus: int) -> Callable[[int], Categorical | None]:
-        """Return a function that returns, for the SKU of a line, a sampler of the next line's SKU.
-
-        The function returns None for a SKU if all pairs with this SKU as `first` have the weight 0.
-        The memory of a sampler is in proportion to `skus`, the number of SKUs, so only recent
-        samplers are cached.
-        """
-        order = np.argsort(self.first, kind="stable")
-        starts = np.searchsorted(self.first[order], np.arange(skus + 1))
-
-        @lru_cache(maxsize=1024)
-        def sampler(sku: int) -> Categorical | None:
-            pairs = order[starts[sku] : starts[sku + 1]]
-            weights = np.full(skus, self.default_weight)
-            weights[self.second[pairs]] = self.weight[pairs]
-            return Categorical(weights) if weights.any() else None
-
-        return sampler
+    def samplers(self, skus: int) -> AffinitySamplers:
+        """Return the samplers of the line after a line with a given SKU; `skus`: number of SKUs."""
+        return AffinitySamplers(self, skus)
 
     def digest(self) -> str:
         """Return the SHA-256 of all attributes."""
@@ -74,3 +59,47 @@ class Affinity:
         for array in (self.first, self.second, self.weight):
             hashed.update(array.astype(array.dtype.newbyteorder("<")).tobytes())
         return hashed.hexdigest()
+
+
+class AffinitySamplers:
+    """Samplers of the SKU of a line, given the SKU of the line before.
+
+    The memory of a sampler is in proportion to the number of SKUs, so only the `MOST_KEPT` samplers
+    used last are kept. Copies of a run create theirs anew.
+
+    Parameters
+    ----------
+    affinity
+        Weights of pairs of SKUs.
+    skus
+        Number of SKUs.
+    """
+
+    def __init__(self, affinity: Affinity, skus: int) -> None:
+        self._affinity, self._skus = affinity, skus
+        self._order = np.argsort(affinity.first, kind="stable")
+        self._starts = np.searchsorted(affinity.first[self._order], np.arange(skus + 1))
+        self._kept: dict[int, Categorical | None] = {}
+
+    def __call__(self, sku: int) -> Categorical | None:
+        """Return the sampler of the line after a line with this SKU.
+
+        The result is None if all pairs with this SKU as `first` have the weight 0.
+        """
+        kept = self._kept
+        sampler = kept.pop(sku) if sku in kept else self._made(sku)
+        kept[sku] = sampler
+        if len(kept) > MOST_KEPT:
+            del kept[next(iter(kept))]
+        return sampler
+
+    def _made(self, sku: int) -> Categorical | None:
+        affinity = self._affinity
+        pairs = self._order[self._starts[sku] : self._starts[sku + 1]]
+        weights = np.full(self._skus, affinity.default_weight)
+        weights[affinity.second[pairs]] = affinity.weight[pairs]
+        return Categorical(weights) if weights.any() else None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state without the samplers."""
+        return self.__dict__ | {"_kept": {}}
