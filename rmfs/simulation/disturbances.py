@@ -282,4 +282,10 @@ class DisturbanceSource:
         waypoints = self._layout.elevators[elevator].waypoints
         self._fleet.close(waypoints)
         number = self._note("elevator", elevator)
-        self._agenda.after(lasting_us, partial(self._reopen, waypoints, number))
+        self._agenda.after(lasting_us, partial(self._elevator_back, elevator, number))
+
+    def _elevator_back(self, elevator: int, number: int) -> None:
+        """End an outage of an elevator, which stays closed if another outage is in progress."""
+        self._end(number)
+        if all(one.element != elevator for one in self._now("elevator")):
+            self._fleet.reopen(self._layout.elevators[elevator].waypoints)

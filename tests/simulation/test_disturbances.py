@@ -5,6 +5,10 @@ from ledger import Ledger
 
 from rmfs import simulate
 from rmfs.errors import InputError
+from rmfs.layout import load
+from rmfs.scenario.parameters.disturbances import Disturbances
+from rmfs.simulation.agenda import Agenda
+from rmfs.simulation.disturbances import DisturbanceSource
 from rmfs.world import verify
 
 EVERYTHING = {
@@ -77,6 +81,48 @@ def test_an_elevator_out_of_use_is_not_used():
     assert any(t0 < 120e6 for t0 in rides)
     assert any(t0 > 260e6 for t0 in rides)
     assert not any(160e6 < t0 < 260e6 for t0 in rides)
+
+
+class Shafts:
+    """A fleet that keeps the closed waypoints."""
+
+    def __init__(self):
+        self.closed = set()
+
+    def close(self, waypoints):
+        self.closed |= set(waypoints)
+
+    def reopen(self, waypoints):
+        self.closed -= set(waypoints)
+
+
+@pytest.mark.parametrize(
+    ("outages", "out_s"),
+    [
+        ([(0, 2.0, 5.0), (0, 5.0, 8.0)], [2, 3, 4, 5, 6, 7]),
+        ([(0, 2.0, 6.0), (0, 4.0, 8.0)], [2, 3, 4, 5, 6, 7]),
+        ([(0, 2.0, 8.0), (0, 3.0, 4.0)], [2, 3, 4, 5, 6, 7]),
+        ([(0, 2.0, 4.0), (1, 3.0, 9.0), (0, 6.0, 8.0)], [2, 3, 6, 7]),
+    ],
+)
+def test_an_elevator_is_out_until_its_last_outage_ends(outages, out_s):
+    layout, agenda, fleet = load("study-tiers"), Agenda(), Shafts()
+    given = Disturbances(elevators_out=outages)
+    source = DisturbanceSource(layout, given, 0, agenda=agenda, fleet=fleet)
+    source.begin()
+    shaft = set(layout.elevators[0].waypoints)
+    found = []
+    for second in range(10):
+        while agenda.next_us <= second * 1_000_000:
+            agenda.now_us = agenda.next_us
+            agenda.run_due()
+        if shaft <= fleet.closed:
+            found.append(second)
+        else:
+            assert not shaft & fleet.closed
+    assert found == out_s
+    periods = {(one.element, one.from_us / 1e6, one.to_us / 1e6) for one in source.begun}
+    assert periods == set(outages)
 
 
 def test_what_cannot_be():
