@@ -25,6 +25,7 @@ from rmfs.scenario import (
 )
 from rmfs.scenario.streams import digest, read_bundles, read_orders
 from rmfs.scenario.streams.csv_file import _fields
+from rmfs.scenario.streams.stream import BundleStreamBuilder, OrderStreamBuilder
 
 ORDERS = """time,order,sku,quantity,due
 0,A,0,1,1800
@@ -91,6 +92,25 @@ def test_skus_are_named_by_their_ids(tmp_path: Path):
     assert orders.sku.tolist() == [1]
     assert write_stream(orders, skus, tmp_path / "again.csv") == digest(orders, skus)
     assert (tmp_path / "again.csv").read_text().splitlines()[1] == "0.000000,0,7,1,"
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_skus_with_numbers_as_names_survive_a_file(tmp_path: Path, suffix: str):
+    """The file holds ids, unless an id is the name of another SKU."""
+    ones = np.ones(5)
+    names = ("2", "1", 'A,"x"', "30", "B")
+    skus = SkuSet(np.arange(5), ones, ones, ones.astype(np.int64), names=names)
+    orders, bundles = OrderStreamBuilder(), BundleStreamBuilder()
+    for sku in range(5):
+        orders.add(sku, -1, [sku], [1])
+        bundles.add(sku, sku, 1)
+    path = tmp_path / f"stream{suffix}"
+    digest_written = write_stream(orders.build(), skus, path)
+    read = read_orders(path, skus)
+    assert read.sku.tolist() == [0, 1, 2, 3, 4]
+    assert digest(read, skus) == digest_written
+    write_stream(bundles.build(), skus, path)
+    assert read_bundles(path, skus).sku.tolist() == [0, 1, 2, 3, 4]
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])

@@ -38,7 +38,8 @@ def write_stream(stream: Stream, skus: SkuSet, path: Path) -> str:
     Parameters
     ----------
     skus
-        The SKUs of the stream; their ids are written to the file.
+        The SKUs of the stream. Their ids are written to the file; a SKU whose id is the name of a
+        SKU, and would be read as such, is written by its name.
     path
         The file, with the suffix .csv or .parquet.
 
@@ -87,7 +88,7 @@ def digest(stream: Stream, skus: SkuSet) -> str:
 
 
 def _text(stream: Stream, skus: SkuSet) -> Iterator[str]:
-    ids = skus.ids[stream.sku].tolist()
+    ids = [_quoted(told) for told in _told(skus)[stream.sku].tolist()]
     units = stream.units.tolist()
     times = [_seconds(time_us) for time_us in stream.time_us.tolist()]
     if isinstance(stream, BundleStream):
@@ -107,6 +108,24 @@ def _text(stream: Stream, skus: SkuSet) -> Iterator[str]:
             yield f"{time},{order},{ids[line]},{units[line]},{last}\n"
 
 
+def _told(skus: SkuSet) -> NDArray[Any]:
+    """Return the id or, if the id is the name of a SKU, the name of each SKU, shape (K,)."""
+    names = set(skus.names)
+    ids = [str(sku) for sku in skus.ids.tolist()]
+    if names.isdisjoint(ids):
+        return skus.ids
+    told = (name if sku in names else sku for sku, name in zip(ids, skus.names, strict=True))
+    return np.array(list(told), dtype=object)
+
+
+def _quoted(field: int | str) -> int | str:
+    """Return a field of a CSV file, in quotation marks if it needs them."""
+    if isinstance(field, int) or not set(field) & {",", '"'}:
+        return field
+    doubled = field.replace('"', '""')
+    return f'"{doubled}"'
+
+
 def _classes(stream: OrderStream) -> list[str] | None:
     """Return the name of the class of each order, empty for an order without a class."""
     if stream.priority is None:
@@ -121,7 +140,7 @@ def _seconds(time_us: int) -> str:
 
 def _columns(stream: Stream, skus: SkuSet) -> dict[str, NDArray[Any]]:
     """Return a stream as columns; `due` is nan for orders without a due time."""
-    lines = {"sku": skus.ids[stream.sku], "quantity": stream.units}
+    lines = {"sku": _told(skus)[stream.sku], "quantity": stream.units}
     if isinstance(stream, BundleStream):
         return {"time": stream.time_us / US_PER_S, "order": np.arange(len(stream)), **lines}
     order = np.repeat(np.arange(len(stream)), np.diff(stream.first_line))
