@@ -102,7 +102,9 @@ def simulate(
         Creates the traffic layer from the arguments of `Traffic`; used by `rmfs.demonstrator` for
         real and emulated robots.
     resume
-        File from which to resume, written by `Simulation.save` in a run with the same inputs.
+        File from which to resume, written by `Simulation.save` in a run with the same inputs. The
+        saved run keeps the copies of its observers, so `observers`, `events` and `streams` must be
+        left out.
 
     Raises
     ------
@@ -113,6 +115,11 @@ def simulate(
     StalledError, OptimiserError, ReplayError
         As for `Simulation.run`.
     """
+    if resume is not None and (observers or events is not None or streams is not None):
+        raise InputError(
+            f"{resume}: a resumed run takes no observers, events or streams; leave them out, or "
+            "use Simulation.load"
+        )
     simulation = Simulation(
         layout,
         scenario,

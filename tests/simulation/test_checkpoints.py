@@ -15,7 +15,10 @@ from test_stepping import simulation, take, told
 
 import rmfs
 from rmfs.errors import InputError
+from rmfs.measure import EventLog
 from rmfs.measure.dictionary import reproducible
+from rmfs.observer import Observer
+from rmfs.scenario import StreamRecorder
 from rmfs.simulation import saving
 from rmfs.simulation.checkpoints import Checkpoints, resumed
 
@@ -120,6 +123,19 @@ def test_what_was_not_recorded_until_the_checkpoint_is_refused(
     assert not resumed(file, rmfs.Simulation("small", "small", set=SMALL, **saved)).ended
     with pytest.raises(InputError, match=f"another {told};"):
         resumed(file, rmfs.Simulation("small", "small", set=SMALL, **resumed_with))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"observers": [Observer()]}, {"events": EventLog()}, {"streams": StreamRecorder()}],
+    ids=lambda given: next(iter(given)),
+)
+def test_a_resumed_run_takes_nothing_that_it_would_not_notify(tmp_path: Path, given) -> None:
+    file, begun = tmp_path / "file", rmfs.Simulation("small", "small", set=SMALL, **given)
+    begun.run_until(1.0)
+    begun.save(file)
+    with pytest.raises(InputError, match="takes no observers, events or streams"):
+        rmfs.simulate("small", "small", set=SMALL, resume=file, **given)
 
 
 def test_files_that_are_no_checkpoints_are_refused(tmp_path: Path, monkeypatch) -> None:
