@@ -29,10 +29,17 @@ class Substreams:
         Purpose of the random numbers, for example `Stream.ORDER_CONTENTS`.
     path
         Numbers that select a branch of the stream; each branch has its own substreams.
+
+    Attributes
+    ----------
+    branch
+        The stream and the path, as one tuple. Two objects with the same branch and seed give the
+        same numbers.
     """
 
     def __init__(self, seed: int, stream: Stream, path: tuple[int, ...] = ()) -> None:
-        sequence = np.random.SeedSequence(seed, spawn_key=(int(stream), *path))
+        self.branch = (int(stream), *path)
+        sequence = np.random.SeedSequence(seed, spawn_key=self.branch)
         self._generator = np.random.Philox(key=sequence.generate_state(2, np.uint64))
         self._uniform: Callable[[], float] = np.random.Generator(self._generator).random
         self._start = self._generator.state

@@ -140,7 +140,11 @@ class _Referring(ArrayPickler):
 
 
 class _Redrawing(_Referring):
-    """Leaves out random streams, which a copy replaces."""
+    """Leaves out random streams, which a copy replaces.
+
+    Substreams of the same branch, such as those of the high periods of orders and of bundles, are
+    replaced by substreams of the same branch.
+    """
 
     def __init__(
         self,
@@ -150,6 +154,7 @@ class _Redrawing(_Referring):
     ) -> None:
         super().__init__(stream, shared, aside)
         self._streams = 0
+        self._branches: dict[tuple[int, ...], int] = {}
         self.dispatch_table[np.random.Generator] = self._another_generator
         self.dispatch_table[Substreams] = self._other_substreams
 
@@ -157,9 +162,9 @@ class _Redrawing(_Referring):
         self._streams += 1
         return _generator, (self._streams,)
 
-    def _other_substreams(self, _: Any) -> Any:
+    def _other_substreams(self, replaced: Substreams) -> Any:
         self._streams += 1
-        return _substreams, (self._streams,)
+        return _substreams, (self._branches.setdefault(replaced.branch, self._streams),)
 
 
 def _generator(number: int) -> np.random.Generator:

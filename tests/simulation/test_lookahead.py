@@ -69,6 +69,24 @@ def test_trials_do_not_see_what_will_really_come(given: dict[str, Any]) -> None:
     assert came[0] != came[1]
 
 
+def test_high_periods_of_orders_and_bundles_coincide_in_futures() -> None:
+    periods = {"kind": "high-low", "low_to_high_per_h": 20.0, "high_to_low_per_h": 20.0}
+    orders = {"mode": "poisson", "profile": periods | {"high_per_h": 600.0}}
+    bundles = {"mode": "poisson", "profile": periods | {"high_per_h": 300.0}}
+    run = made("small", scenario__demand=orders, scenario__replenishment=bundles)
+    run.run_until(200.0)
+    for path in [(1, 0), (1, 1)]:
+        arrivals = run._snapshot(None)(path)[0].arrivals
+        intakes = arrivals._orders, arrivals._bundles
+        rates = [intake._processes[-1]._candidates._rate for intake in intakes]
+        high = [
+            [rate.per_h(at_s * 10**6) == rate.peak_per_h for at_s in range(0, 4000, 20)]
+            for rate in rates
+        ]
+        assert high[0] == high[1]
+        assert 0 < sum(high[0]) < len(high[0])
+
+
 def test_one_future_for_all_that_is_compared_and_another_next_time() -> None:
     run = with_a_free_slot()
     trials = trials_of(run)
