@@ -147,6 +147,10 @@ class Earnings(Observer):
         self._value += goal.orders * self._left(order.completed_s)
         self._value -= goal.overdue_s * self._overdue_s(order, order.completed_s)
 
+    def order_cancelled(self, order: Order) -> None:
+        """Subtract the cost of the order's overdue time within the horizon."""
+        self._value -= self._goal.overdue_s * self._overdue_s(order, order.cancelled_s)
+
     def bundle_stored(self, bundle: Bundle, robot: int) -> None:
         """Add the value of the bundle's units, times the share of the horizon that is left."""
         self._value += self._goal.units_stored * bundle.units * self._left(bundle.stored_s)
@@ -154,7 +158,8 @@ class Earnings(Observer):
     def value(self, world: World) -> float:
         """Return the value of the trial, with the costs of distance and overdue orders deducted.
 
-        For an order that is not yet complete, the overdue time is counted up to the present time.
+        For an order that is not yet complete, the overdue time is counted up to the present time;
+        for a cancelled order, up to its cancellation.
         """
         goal, value = self._goal, self._value
         if goal.overdue_s:

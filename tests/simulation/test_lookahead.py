@@ -260,3 +260,15 @@ def test_a_split_order_is_overdue_once() -> None:
     assert earnings.value(situation.world) == -30.0
     situation.world.assign_lines(order, 1, [2])
     assert earnings.value(situation.world) == -30.0
+
+
+def test_a_cancelled_order_was_overdue_until_then() -> None:
+    """Due at 10 s, cancelled at 25 s."""
+    situation = Situation(small_layout(pick_stations=1))
+    order = situation.order(due_s=10.0, s0=1)
+    earnings = Earnings(Goal(units=0.0, overdue_s=1.0), begin_s=0.0, horizon_s=40.0)
+    situation.world.now_s = 25.0
+    situation.world.cut_order(order, {})
+    earnings.order_cancelled(order)
+    situation.world.now_s = 40.0
+    assert earnings.value(situation.world) == -15.0
