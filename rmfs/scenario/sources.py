@@ -39,7 +39,7 @@ def sku_set(config: Skus) -> SkuSet:
     match config.file.suffix.lower():
         case ".json":
             return read_sku_set(config.file)
-        case ".csv":
+        case ".csv" | ".parquet":
             return _completed(read_sku_table(config.file), config)
         case ".xitem":
             return _completed(foreign.read(config.file).skus, config)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy import stats
 
@@ -245,6 +246,31 @@ def test_a_fit_does_not_hang_on_where_it_begins():
         found = fit_popularity(counts[counts > 0]).shape
         assert found.low < 0.3 < found.high
         assert found.high < 0.7
+
+
+def test_a_parquet_file_gives_the_twin_of_the_csv_file(tmp_path):
+    rng = np.random.default_rng(1)
+    table = pd.DataFrame(
+        {
+            "time": np.sort(rng.uniform(0, 86400, 800)).round(3),
+            "order": np.arange(800),
+            "sku": rng.zipf(1.5, 800) % 60,
+            "quantity": 1,
+        }
+    )
+    table.to_csv(tmp_path / "orders.csv", index=False)
+    table.to_parquet(tmp_path / "orders.parquet")
+    as_csv, as_parquet = (
+        fit_twin(tmp_path / f"orders.{kind}", "twin", listed=True) for kind in ("csv", "parquet")
+    )
+    assert as_parquet.estimates == as_csv.estimates
+    assert as_parquet.skus.digest() == as_csv.skus.digest()
+
+
+@pytest.mark.parametrize("name", ["none.csv", "none.txt"])
+def test_a_file_that_is_not_there_is_told_in_one_line(tmp_path, name):
+    with pytest.raises(InputError, match=r"none\..*: file: (no such file|must end in)"):
+        fit_twin(tmp_path / name, "twin")
 
 
 def test_listed_counts():

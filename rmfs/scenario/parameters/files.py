@@ -31,7 +31,9 @@ StreamFile = Annotated[Path, pydantic.Strict(strict=False), existing(".csv", ".p
 """A file of orders or bundles with their arrival times."""
 
 SkuSetFile = Annotated[
-    Path, pydantic.Strict(strict=False), existing(".json", ".csv", ".xgenc", ".xitem")
+    Path,
+    pydantic.Strict(strict=False),
+    existing(".json", ".csv", ".parquet", ".xgenc", ".xitem"),
 ]
 
 WordFile = Annotated[Path, pydantic.Strict(strict=False), existing()]

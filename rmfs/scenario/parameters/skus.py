@@ -79,8 +79,8 @@ class SkuFile(_Sizes):
     """
 
     file: SkuSetFile = Field(
-        description="SKU set, relative to the scenario file: .json (rmfs-skus/1), .csv (columns "
-        "sku, popularity, space_per_unit, bundle_units), .xgenc or .xitem"
+        description="SKU set, relative to the scenario file: .json (rmfs-skus/1), .csv or "
+        ".parquet (columns sku, popularity, space_per_unit, bundle_units), .xgenc or .xitem"
     )
 
 

@@ -1,4 +1,4 @@
-"""SKU sets as CSV files with a row per SKU."""
+"""SKU sets as CSV or Parquet files with a row per SKU."""
 
 from __future__ import annotations
 
@@ -84,7 +84,15 @@ def _ordered(skus: list[str], lines: list[int]) -> tuple[dict[str, list[str]], l
 
 
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield line number and fields of every row that is not empty."""
+    """Yield line number and fields of every row that is not empty.
+
+    The rows of a Parquet file are numbered like the lines of a CSV file with the same rows.
+    """
+    if path.suffix.lower() == ".parquet":
+        from rmfs.scenario.streams.parquet_file import parquet_rows  # slow to import
+
+        yield from enumerate(parquet_rows(path), start=1)
+        return
     try:
         text = read_bounded(path).decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Any
 import pyarrow as pa  # type: ignore[import-untyped]
 from pyarrow import parquet
 
+from rmfs.errors import InputError
 from rmfs.scenario.streams.columns import MOST_ROWS, Columns
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -54,6 +56,33 @@ def read_parquet(path: Path, rows: Rows, problems: Problems) -> None:
         problems.add(f"not a complete Parquet file ({str(error).splitlines()[0]:.200})")
     except ValueError as error:
         problems.add(str(error))
+
+
+def parquet_rows(path: Path) -> Iterator[list[str]]:
+    """Yield the names of the columns, then each row, as text.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or has more than `MOST_ROWS` rows.
+    """
+    try:
+        with parquet.ParquetFile(
+            path,
+            thrift_string_size_limit=LARGEST_HEADER,
+            thrift_container_size_limit=LARGEST_HEADER,
+        ) as file:
+            if file.metadata.num_rows > MOST_ROWS:
+                raise InputError(f"{path}: more than {MOST_ROWS} rows")
+            yield list(file.schema_arrow.names)
+            for batch in file.iter_batches(ROWS_AT_ONCE):
+                for fields in zip(*(column.to_pylist() for column in batch.columns), strict=True):
+                    yield [_text(field) for field in fields]
+    except (pa.ArrowException, OSError) as error:
+        if isinstance(error, OSError) and error.errno is not None:
+            raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+        told = str(error).splitlines()[0]
+        raise InputError(f"{path}: not a complete Parquet file ({told:.200})") from None
 
 
 def _text(field: Any) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rmfs.config import validate
 from rmfs.errors import InputError
 from rmfs.scenario.counts import ListedCount
 from rmfs.scenario.distributions import Gamma
@@ -91,7 +92,7 @@ def fit_twin(
         If the file is invalid or contains too few orders, if `weekly` is true and the file covers
         fewer than seven days, or if no gamma distribution fits the popularity of its SKUs.
     """
-    skus = sku_set(SkuFile(file=path))
+    skus = sku_set(validate(SkuFile, {"file": path}, str(path)))
     stream = read_orders(path, skus)
     try:
         return _fitted(stream, name, seed, weekly=weekly, listed=listed)
