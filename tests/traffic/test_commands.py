@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from rmfs.layout import load
-from rmfs.traffic import EventKind, Step, Traffic
+from rmfs.traffic import EventKind, Step, Traffic, TripKind
 
 
 @pytest.fixture
@@ -143,3 +143,46 @@ def test_resetting_statistics(layout):
     assert before > 0
     assert traffic.counters()["plans"] == 0
     assert traffic.motion()["idle_s"].sum() == 0
+
+
+def test_a_trip_begins_when_its_robot_is_told_even_without_a_way(layout):
+    """Robot 1 is told at 200 s and finds no way before 400 s: the wait is part of its trip."""
+    traffic = Traffic(layout)
+    place, other = layout.pod_waypoint[[10, 200]].tolist()
+    traffic.command(0, [(Step.DRIVE, place)])
+    events_until(traffic, 200)
+    traffic.command(1, [(Step.DRIVE, place)])
+    events_until(traffic, 400)
+    traffic.command(0, [(Step.DRIVE, other)])
+    events_until(traffic, 700)
+    trips = traffic.trips()
+    own = trips["robot"] == 1
+    assert trips["t0_us"][own].tolist() == [200_000_000]
+    assert trips["from_wp"][own].tolist() == [layout.robot_waypoint[1]]
+    assert trips["t1_us"][own][0] > 400_000_000
+    assert trips["distance_m"][own][0] == traffic.motion()["distance_m"][1]
+
+
+def test_a_trip_to_a_full_queue_begins_with_the_lifted_pod():
+    """Of four robots, the last finds no place in a queue of three and waits beneath its pod."""
+    sizes = [(["robots"], 4), (["buffer_width"], 2), (["entry_exit_distance"], 1)]
+    layout = load("default", sizes)
+    assert len(layout.stations[0].queue) == 3
+    traffic = Traffic(layout)
+    lifted = {}
+    for robot in range(4):
+        place = int(layout.pod_waypoint[robot])
+        program = [(Step.DRIVE, place), (Step.LIFT, robot), (Step.STATION, 0)]
+        traffic.command(robot, program)
+    for until_s in (400, 700, 1000, 1300):
+        for time, kind, robot, _ in events_until(traffic, until_s):
+            if kind == EventKind.LIFTED:
+                lifted[robot] = time
+            if kind == EventKind.AT_HEAD:
+                head = robot
+        traffic.command(head, [(Step.DRIVE, int(layout.pod_waypoint[head]))])
+    trips = traffic.trips()
+    to_station = trips["kind"] == TripKind.TO_STATION
+    begun = dict(zip(trips["robot"][to_station].tolist(), trips["t0_us"][to_station], strict=True))
+    assert begun == lifted
+    assert (trips["t1_us"] - trips["t0_us"])[to_station].max() > 250_000_000

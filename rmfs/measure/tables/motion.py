@@ -25,7 +25,13 @@ TRIPS = (
     Column("kind", TEXT, "", "Kind of the trip: to_pod, to_station, to_storage or to_rest"),
     Column("from_waypoint", INTEGER, "", "Waypoint at which the trip starts"),
     Column("to_waypoint", INTEGER, "", "Waypoint at which the trip ends"),
-    Column("start_s", REAL, "s", "Time at which the robot got the command to drive"),
+    Column(
+        "start_s",
+        REAL,
+        "s",
+        "Time at which the robot got the command to drive or, if it was still driving, lifting a "
+        "pod or out of order then, could set off",
+    ),
     Column("end_s", REAL, "s", "Time of arrival; for a trip to a station, at its queue zone"),
     Column("station", INTEGER, "", "Destination station; -1 for other kinds of trips"),
     Column("loaded", FLAG, "", "Whether the robot carried a pod"),

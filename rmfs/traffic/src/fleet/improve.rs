@@ -48,7 +48,7 @@ impl Fleet {
     fn is_late(&self, robot: u32) -> bool {
         let end = self.robots[robot as usize].destination().2;
         let leg = self.legs[robot as usize].as_ref();
-        leg.is_some_and(|leg| end - leg.start - leg.unhindered > LATE)
+        leg.is_some_and(|leg| leg.unhindered.is_some_and(|time| end - leg.ready - time > LATE))
     }
 
     /// Robots under way that use a waypoint directly before a robot enters it.

@@ -128,8 +128,12 @@ impl Counters {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Leg {
     from: u32,
+    /// When the robot could have set off, had there been a way.
     start: Us,
-    unhindered: Us,
+    /// When it could set off once there was a way.
+    ready: Us,
+    /// Duration without other robots; `None` while no way has been found.
+    unhindered: Option<Us>,
     distance_before: f64,
     energy_before: f64,
     /// When the robot reached the queue zone of the station it drives to.

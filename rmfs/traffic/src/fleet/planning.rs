@@ -126,19 +126,16 @@ impl Fleet {
             - time_in_zone(network, kind, &moves, zone);
         postpone(network, table, kind, &mut moves);
         let departs = kept == 0 && !moves.is_empty();
-        if self.legs[robot as usize].is_none() {
-            self.counters.plans += 1;
-            self.legs[robot as usize] = Some(Leg {
-                from: start,
-                start: could_depart,
-                unhindered,
-                distance_before: self.record.totals[robot as usize].distance,
-                energy_before: self.record.used(robot),
-                zone_entered: None,
-                awaited,
-            });
-        } else {
+        if self.legs[robot as usize].as_ref().is_some_and(|leg| leg.unhindered.is_some()) {
             self.counters.replans += 1;
+        } else {
+            self.counters.plans += 1;
+            let new = self.new_leg(robot, start, could_depart);
+            let waiting = self.legs[robot as usize].take();
+            // a leg begins when the robot begins to stand without a way
+            let leg = waiting.filter(|leg| leg.start <= could_depart).unwrap_or(new);
+            self.legs[robot as usize] =
+                Some(Leg { ready: could_depart, unhindered: Some(unhindered), awaited, ..leg });
         }
         if in_turn {
             self.robots[robot as usize].awaits = (could_depart, could_depart + awaited);
@@ -150,6 +147,20 @@ impl Fleet {
         self.released.push(start);
         self.fresh.push(robot);
         true
+    }
+
+    /// A leg for which no way has been found yet.
+    pub(super) fn new_leg(&self, robot: u32, from: u32, start: Us) -> Leg {
+        Leg {
+            from,
+            start,
+            ready: start,
+            unhindered: None,
+            distance_before: self.record.totals[robot as usize].distance,
+            energy_before: self.record.used(robot),
+            zone_entered: None,
+            awaited: 0,
+        }
     }
 
     /// Makes the kept moves and the new ones the robot's plan.

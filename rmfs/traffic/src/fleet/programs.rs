@@ -144,7 +144,17 @@ impl Fleet {
 
     /// Lets the robot continue to the end of its plan, and repeatedly try to continue from there.
     pub(super) fn wait_for_a_way(&mut self, robot: u32) {
-        self.robots[robot as usize].phase = Phase::Blocked;
+        let state = &mut self.robots[robot as usize];
+        state.phase = Phase::Blocked;
+        if self.legs[robot as usize].is_none() {
+            let (from, _, rested) = state.destination();
+            let stands_from = if self.pace.is_some() {
+                state.awaits.0
+            } else {
+                rested.max(self.now).max(state.busy_until)
+            };
+            self.legs[robot as usize] = Some(self.new_leg(robot, from, stands_from));
+        }
         self.blocked.push(robot);
         self.schedule_retry();
     }
@@ -213,7 +223,7 @@ impl Fleet {
             to: state.anchor,
             loaded: state.pod.is_some(),
             distance: self.record.totals[robot as usize].distance - leg.distance_before,
-            unhindered: leg.unhindered,
+            unhindered: leg.unhindered.unwrap_or(0),
             energy: self.record.used(robot) - leg.energy_before,
             awaited: leg.awaited.min(end - leg.start.min(end)),
         });

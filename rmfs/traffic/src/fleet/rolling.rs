@@ -406,14 +406,7 @@ impl Fleet {
         let whole = moves.last().map_or(0, |last| last.end - ready);
         let unhindered = whole - time_in_zone(&self.network, way.kind, &moves, zone);
         self.counters.plans += 1;
-        self.legs[robot as usize] = Some(Leg {
-            from: start,
-            start: ready,
-            unhindered,
-            distance_before: self.record.totals[robot as usize].distance,
-            energy_before: self.record.used(robot),
-            zone_entered: None,
-            awaited: 0,
-        });
+        let leg = self.new_leg(robot, start, ready);
+        self.legs[robot as usize] = Some(Leg { unhindered: Some(unhindered), ..leg });
     }
 }
