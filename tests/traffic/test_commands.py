@@ -186,3 +186,22 @@ def test_a_trip_to_a_full_queue_begins_with_the_lifted_pod():
     begun = dict(zip(trips["robot"][to_station].tolist(), trips["t0_us"][to_station], strict=True))
     assert begun == lifted
     assert (trips["t1_us"] - trips["t0_us"])[to_station].max() > 250_000_000
+
+
+def test_the_distance_of_a_trip_begins_where_the_trip_begins(layout):
+    """A robot sent elsewhere first drives on to its next stop: that is no part of the trip."""
+    layout = load("default", [(["robots"], 1)])
+    traffic = Traffic(layout)
+    first, second = layout.pod_waypoint[[10, 200]].tolist()
+    traffic.command(0, [(Step.DRIVE, first)])
+    traffic.advance(1_000_000)
+    stop = traffic.plan(0)[0].to_waypoint
+    traffic.command(0, [(Step.DRIVE, second)])
+    events_until(traffic, 300)
+    trips = traffic.trips()
+    begin = int(layout.robot_waypoint[0])
+    before_m = np.hypot(layout.x_m[stop] - layout.x_m[begin], layout.y_m[stop] - layout.y_m[begin])
+    assert trips["from_wp"].tolist() == [stop]
+    assert before_m > 0
+    driven_m = traffic.motion()["distance_m"][0]
+    assert trips["distance_m"][0] == pytest.approx(driven_m - before_m)

@@ -42,10 +42,15 @@ impl Fleet {
             );
             self.record.drive(&self.network, kind, robot, &step, state.pod, purpose);
             let station = state.station();
-            if let Some(leg) = &mut self.legs[robot as usize]
-                && leg.zone_entered.is_none()
-            {
-                leg.zone_entered = enters_zone(&self.network, kind, &step, station);
+            if let Some(leg) = &mut self.legs[robot as usize] {
+                if step.end <= leg.start {
+                    // it was still driving its previous plan
+                    leg.distance_before = self.record.totals[robot as usize].distance;
+                    leg.energy_before = self.record.used(robot);
+                }
+                if leg.zone_entered.is_none() {
+                    leg.zone_entered = enters_zone(&self.network, kind, &step, station);
+                }
             }
             if !step.ride {
                 state.anchored = last_approach(&self.network, kind, &step);
