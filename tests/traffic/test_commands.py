@@ -205,3 +205,20 @@ def test_the_distance_of_a_trip_begins_where_the_trip_begins(layout):
     assert before_m > 0
     driven_m = traffic.motion()["distance_m"][0]
     assert trips["distance_m"][0] == pytest.approx(driven_m - before_m)
+
+
+def test_time_in_a_queue_is_kept_if_the_robot_is_sent_elsewhere(layout):
+    """The second robot in a queue is told to leave: its queueing time ends, but stays counted."""
+    traffic = Traffic(layout)
+    for robot in (0, 1):
+        place = int(layout.pod_waypoint[robot])
+        program = [(Step.DRIVE, place), (Step.LIFT, robot), (Step.STATION, 0)]
+        traffic.command(robot, program)
+    events_until(traffic, 300)
+    before = traffic.motion()["queueing_s"]
+    waiting = int(np.argmax(before))
+    assert before[waiting] > 100
+    traffic.command(waiting, [(Step.DRIVE, int(layout.pod_waypoint[waiting]))])
+    assert traffic.motion()["queueing_s"].tolist() == before.tolist()
+    events_until(traffic, 310)
+    assert traffic.motion()["queueing_s"].tolist() == before.tolist()

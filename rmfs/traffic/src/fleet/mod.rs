@@ -279,11 +279,17 @@ impl Fleet {
         }
         program.iter().try_for_each(|&step| self.exists(step))?;
         self.settle(robot);
+        let queueing_since = self.queueing_since(robot as usize);
         let state = &mut self.robots[robot as usize];
         if !state.moves.is_empty()
             && matches!(program.first(), Some(Step::Lift(_) | Step::SetDown(_)))
         {
             return Err(format!("robot {robot} is driving and cannot lift or set down"));
+        }
+        if let Some(entered) = queueing_since {
+            // it leaves the queue without having been served
+            let totals = &mut self.record.totals[robot as usize];
+            totals.queueing += self.now - entered.max(self.record.since);
         }
         state.program = VecDeque::from(program.to_vec());
         state.awaits = (0, 0);

@@ -112,7 +112,7 @@ impl Fleet {
     }
 
     /// When the robot entered the queue zone in which it is, on its way to the station.
-    fn queueing_since(&self, robot: usize) -> Option<Us> {
+    pub(super) fn queueing_since(&self, robot: usize) -> Option<Us> {
         let state = &self.robots[robot];
         let leg = self.legs[robot].as_ref()?;
         let entering = || {
