@@ -222,3 +222,19 @@ def test_time_in_a_queue_is_kept_if_the_robot_is_sent_elsewhere(layout):
     assert traffic.motion()["queueing_s"].tolist() == before.tolist()
     events_until(traffic, 310)
     assert traffic.motion()["queueing_s"].tolist() == before.tolist()
+
+
+def test_a_robot_asks_for_its_plan_when_it_begins_to_lift(layout):
+    """Also if the planner begins in the very moment at which the pod is lifted."""
+    place = int(layout.pod_waypoint[7])
+    program = [(Step.DRIVE, place), (Step.LIFT, 7), (Step.STATION, 1)]
+    plain = Traffic(layout)
+    plain.command(0, program)
+    times = {kind: time for time, kind, _, _ in events_until(plain, 400)}
+    traffic = Traffic(layout)
+    traffic.set_pace("fixed", period_us=times[EventKind.LIFTED])
+    traffic.command(0, program)
+    events_until(traffic, 400)
+    plans = traffic.plans()
+    assert plans["begun_us"].tolist() == [0, times[EventKind.LIFTED]]
+    assert plans["asked_us"].tolist() == [0, times[EventKind.LIFT_STARTED]]

@@ -221,9 +221,10 @@ impl Fleet {
         };
         let state = &mut self.robots[robot as usize];
         pace.ask(robot, state.pod.is_some(), now, again);
-        if pace.next(now).is_some_and(|first| pace.queue[first].robot == robot) {
-            pace.withdraw(robot);
-            return self.plan_in_turn(robot, now);
+        if let Some(first) = pace.next(now).filter(|&first| pace.queue[first].robot == robot) {
+            // it may have asked before, while it was lifting
+            let asked = pace.queue.remove(first).asked;
+            return self.plan_in_turn(robot, asked);
         }
         let stands_from = state.destination().2.max(now).max(state.busy_until);
         if state.phase != Phase::Transferring {
