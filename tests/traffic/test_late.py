@@ -89,6 +89,24 @@ def test_motion_in_progress_ends_later_only_if_asked(two):
     assert (now.start_us, now.end_us) == (first.start_us, first.end_us + SECOND)
 
 
+@pytest.mark.parametrize(("seconds", "later"), [(None, 0), (31, 20 * SECOND), (47, 0)])
+def test_a_delayed_trip_to_a_station_ends_where_its_queue_zone_begins(seconds, later):
+    """Of a run delayed by 20 s, only what lies after the delay comes later."""
+    layout = load("default", [(["robots"], 1)])
+    traffic = Traffic(layout)
+    place = int(layout.pod_waypoint[7])
+    traffic.command(0, [(Step.DRIVE, place), (Step.LIFT, 7), (Step.STATION, 0)])
+    heads = []
+    while not heads:
+        heads = [time for time, kind, _, _ in traffic.advance(traffic.now_us + SECOND) if kind == 5]
+        if seconds is not None and traffic.now_us > seconds * SECOND:
+            assert traffic.delay(0, 20 * SECOND, begun=True)
+            seconds = None
+    entered = int(traffic.trips()["t1_us"][-1])
+    assert abs(entered - 45_866_667 - later) < 100
+    assert abs(traffic.motion()["queueing_s"][0] - (heads[0] - entered) / SECOND) < 1e-6
+
+
 def test_a_negative_delay_is_refused(two):
     with pytest.raises(ValueError, match="a delay of -1 us"):
         two[1].delay(0, -1)

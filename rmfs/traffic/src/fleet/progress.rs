@@ -2,7 +2,7 @@
 
 use crate::kinematics::Kind;
 use crate::network::Network;
-use crate::record::{Piece, Row, Standing, Totals, enters_zone, partly};
+use crate::record::{Piece, Row, Standing, Totals, partly};
 use crate::robot::{Phase, Step};
 use crate::search::Move;
 use crate::units::{Us, floor_us};
@@ -40,17 +40,16 @@ impl Fleet {
                 state.pod,
                 why,
             );
-            self.record.drive(&self.network, kind, robot, &step, state.pod, purpose);
             let station = state.station();
+            let entered = self.record.enters_zone(&self.network, kind, robot, &step, station);
+            self.record.drive(&self.network, kind, robot, &step, state.pod, purpose);
             if let Some(leg) = &mut self.legs[robot as usize] {
                 if step.end <= leg.start {
                     // it was still driving its previous plan
                     leg.distance_before = self.record.totals[robot as usize].distance;
                     leg.energy_before = self.record.used(robot);
                 }
-                if leg.zone_entered.is_none() {
-                    leg.zone_entered = enters_zone(&self.network, kind, &step, station);
-                }
+                leg.zone_entered = leg.zone_entered.or(entered);
             }
             if !step.ride {
                 state.anchored = last_approach(&self.network, kind, &step);
@@ -117,7 +116,8 @@ impl Fleet {
         let leg = self.legs[robot].as_ref()?;
         let entering = || {
             let kind = &self.kinds[state.kind as usize];
-            enters_zone(&self.network, kind, state.moves.front()?, state.station())
+            let step = state.moves.front()?;
+            self.record.enters_zone(&self.network, kind, robot as u32, step, state.station())
         };
         leg.zone_entered.or_else(entering).filter(|&entered| entered <= self.now)
     }
