@@ -215,6 +215,8 @@ def _model(
     paid = np.flatnonzero(cost)
     proto.objective.vars.extend(paid.tolist())
     proto.objective.coeffs.extend(_whole("cost", cost[paid]))
+    # the gap is relative to the whole objective
+    proto.objective.offset = program.offset * scale
     if start is not None:
         proto.solution_hint.vars.extend(range(program.columns))
         proto.solution_hint.values.extend(_whole("start", np.rint(start)))
@@ -260,7 +262,7 @@ def _outcome(
         bound = solver.best_objective_bound
         if (total := _largest_sum(program, scale)) > _EXACT:
             bound -= 4.0 * total / _EXACT
-        bound = bound / scale + program.offset
+        bound /= scale
     elif ended is Status.INFEASIBLE:
         bound = math.inf
     return Outcome(

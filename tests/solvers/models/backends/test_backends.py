@@ -238,3 +238,19 @@ def test_the_gap_at_an_optimum_of_nothing_is_nothing() -> None:
     assert Solution(objective=0.0, bound=-1e-6, **values).gap == 0.0
     assert Solution(objective=1e-3, bound=0.0, **values).gap == 1.0
     assert Solution(objective=2.0, bound=1.0, **values).gap == 0.5
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+def test_the_gap_limit_is_relative_to_the_objective_with_its_offset(backend: str) -> None:
+    """Most of the offset is earned back, so 5 % of the objective is far less than 5 % of that."""
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        builder = ProgramBuilder()
+        columns = builder.columns(30, cost=-rng.integers(100, 140, 30))
+        rows = np.arange(3)[:, None]
+        builder.rows(3, (rows, columns, rng.integers(1, 30, (3, 30))), upper=200)
+        program = builder.build(offset=2500.0)
+        outcome = BACKENDS[backend](program, Limits(gap=0.05))
+        assert outcome.status is Status.OPTIMAL
+        value = program.objective(outcome.x)
+        assert value - outcome.bound <= 0.0501 * abs(value)
