@@ -11,10 +11,11 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
+from rmfs.solvers.models.checks import require
 from rmfs.solvers.models.pile_on import greedy, neighbourhood, prices
 from rmfs.solvers.models.pile_on.candidates import Pruning, prune
 from rmfs.solvers.models.pile_on.data import PileOn
-from rmfs.solvers.models.pile_on.values import Assignment, objective
+from rmfs.solvers.models.pile_on.values import Assignment, objective, violations
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution
 
 
@@ -47,8 +48,15 @@ def solve(
     for the full input. `work` is measured in deterministic seconds of CP-SAT, whose last run may
     exceed the limit. `built` counts the effort of building the programs and of preparing `greedy`.
     Neither includes the steps for the bound.
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
     """
     began = time.perf_counter()
+    broken = [] if start is None else violations(data, start)
+    require(not broken, "start", "; ".join(broken))
     rule = greedy.solve(data, seed=seed)
     best = rule.required
     if start is not None and objective(data, start) < rule.objective:

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rmfs.solvers.models.checks import require
 from rmfs.solvers.models.pile_on import cp_sat
 from rmfs.solvers.models.pile_on.candidates import Candidates, everything
 from rmfs.solvers.models.pile_on.data import Integers, PileOn
@@ -53,6 +54,11 @@ def solve(
     Returns
     -------
     The decision. Its bound is -inf if there is more than one part, or if candidates are given.
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
     """
     left = DEFAULT_WORK if limits.deterministic_s is None else limits.deterministic_s
     limits = replace(limits, deterministic_s=left)
@@ -62,6 +68,8 @@ def solve(
     if len(groups) <= 1:
         return cp_sat.solve(data, limits, seed=seed, start=start, candidates=candidates)
     began = time.perf_counter()
+    broken = violations(data, values)
+    require(not broken, "start", "; ".join(broken))
     small = compact(data, pairs.including(values))
     current = small.shrink(values)
     build_s, built, work, idle, turn = 0.0, 0.0, 0.0, 0, 0

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rmfs.solvers.models.checks import require
 from rmfs.solvers.models.sequencing import local_search
 from rmfs.solvers.models.sequencing.bounds import visits_bound
 from rmfs.solvers.models.sequencing.data import (
@@ -28,6 +29,7 @@ from rmfs.solvers.models.sequencing.data import (
     Sequencing,
     VisitSequence,
     objective,
+    violations,
 )
 from rmfs.solvers.models.sequencing.sets import useful_pods
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
@@ -62,10 +64,17 @@ def solve(
     Returns
     -------
     A feasible plan, with the bound of `visits_bound`; status INFEASIBLE if there is no plan.
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
     """
     began = time.perf_counter()
     if not data.feasible:
         return Solution(None, math.inf, math.inf, Status.INFEASIBLE, "rule")
+    broken = [] if start is None else violations(data, start)
+    require(not broken, "start", "; ".join(broken))
     plan, scored = search(data, width)
     if start is not None and objective(data, start) < objective(data, plan):
         plan = start

@@ -24,7 +24,8 @@ from itertools import combinations
 
 import numpy as np
 
-from rmfs.solvers.models.sequencing.data import Sequencing, VisitSequence, objective
+from rmfs.solvers.models.checks import require
+from rmfs.solvers.models.sequencing.data import Sequencing, VisitSequence, objective, violations
 from rmfs.solvers.models.sequencing.sets import Sets, reduce
 from rmfs.solvers.models.solution import NO_LIMITS, Limits, Solution, Status
 
@@ -50,16 +51,23 @@ def solve(
     seed
         Not used, as nothing is random.
     start
-        A plan to return if the limit is reached. Default: none.
+        A feasible plan to return if the limit is reached. Default: none.
 
     Returns
     -------
     An optimal plan. If the limit is reached, the start is returned; without a start, the solution
     has no values and the status LIMIT. The status is INFEASIBLE if no plan exists.
+
+    Raises
+    ------
+    ModelError
+        If the start is not feasible.
     """
     began = time.perf_counter()
     if not data.feasible:
         return _solution(data, None, math.inf, Status.INFEASIBLE, 0, began)
+    broken = [] if start is None else violations(data, start)
+    require(not broken, "start", "; ".join(broken))
     sets = reduce(data)
     root: State = (sets.needs, sum(1 << o for o in np.flatnonzero(data.open).tolist()))
     cheapest = {root: 0}

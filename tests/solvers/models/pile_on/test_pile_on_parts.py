@@ -27,7 +27,7 @@ from rmfs.solvers.models.pile_on import (
 from rmfs.solvers.models.pile_on.program import formulate
 from rmfs.solvers.models.pile_on.relaxation import PileOnRelaxation, bound
 from rmfs.solvers.models.pile_on.restrict import compact, part
-from rmfs.solvers.models.pile_on.values import called_supply, demand, uncovered
+from rmfs.solvers.models.pile_on.values import called_supply, demand, nothing, uncovered
 
 
 def test_columns_say_the_same_as_the_objective() -> None:
@@ -263,3 +263,21 @@ def test_what_is_built_grows_with_the_input() -> None:
     limits = Limits(deterministic_s=0.001)
     small, medium = (joint.solve(snapshot(size, 1), limits) for size in (SMALL, MEDIUM))
     assert medium.built > 1.5 * small.built
+
+
+@pytest.mark.parametrize("method", [joint, cp_sat, neighbourhood])
+def test_a_start_that_is_not_feasible_is_refused(method: object) -> None:
+    data = PileOn(
+        slots=[1, 1, 1],
+        line_order=[0],
+        line_sku=[0],
+        line_units=[1],
+        stock=[[1]],
+        travel=np.ones((1, 3)),
+        available=[True],
+        inbound=[-1],
+        open_units=np.zeros((3, 1)),
+    )
+    served = replace(nothing(data), slot=np.eye(1, 3, dtype=bool), line_station=np.array([0]))
+    with pytest.raises(ModelError, match="start: stock of station does not cover what it serves"):
+        method.solve(data, Limits(deterministic_s=0.001), start=served)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rmfs.solvers.models import ModelError, Status
+from rmfs.solvers.models import Limits, ModelError, Status
 from rmfs.solvers.models.sequencing import (
     Sequencing,
     VisitSequence,
@@ -67,3 +67,12 @@ def test_violations_name_each_broken_rule() -> None:
     for text, plan in plans.items():
         assert any(text in line for line in violations(data, plan)), text
     assert violations(data, VisitSequence(np.array([0, 1, 0]), np.array([-1, 1]))) == []
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_start_that_is_not_feasible_is_refused(method: object) -> None:
+    """It would look optimal: one visit instead of two."""
+    data = Sequencing(np.eye(2), np.eye(2), 1)
+    start = VisitSequence(np.array([0]), np.array([0, 0]))
+    with pytest.raises(ModelError, match="start: order is never complete"):
+        method.solve(data, Limits(iterations=0), start=start)
