@@ -82,6 +82,8 @@ def solve(
         if stage is None:
             continue
         before = stage.start()
+        if data.variant.many_stations and violations(stage.data, before):
+            continue
         found = cp_sat.solve(
             stage.data,
             replace(limits, deterministic_s=left - work, iterations=None),

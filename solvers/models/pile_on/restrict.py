@@ -172,8 +172,9 @@ def part(
     free stations remain taken, and its lines covered there become open demand. A pod called to a
     free station stays called if it holds a SKU of such a line. If fixed orders take all slots of a
     free station, the prospects of this station (see `Assignment`) stay fixed, too. As open demand
-    need not be covered, a decision returned by `merge` may leave one of these lines without stock;
-    `violations` reports this.
+    need not be covered, a decision returned by `merge` may leave one of these lines without stock.
+    Conversely, the part gives stock to open demand first, so its share of `values` may not be
+    feasible if `values` leaves open demand of a free station uncovered. `violations` reports both.
 
     Parameters
     ----------

@@ -281,3 +281,29 @@ def test_a_start_that_is_not_feasible_is_refused(method: object) -> None:
     served = replace(nothing(data), slot=np.eye(1, 3, dtype=bool), line_station=np.array([0]))
     with pytest.raises(ModelError, match="start: stock of station does not cover what it serves"):
         method.solve(data, Limits(deterministic_s=0.001), start=served)
+
+
+def test_open_demand_may_go_short_for_a_line_beside_a_split_order() -> None:
+    """A part would give the pod kept for the split order to the open demand, not to the line."""
+    data = PileOn(
+        slots=[2, 1, 1],
+        line_order=[0, 0, 1],
+        line_sku=[0, 1, 0],
+        line_units=[1, 1, 1],
+        stock=[[2, 0], [0, 1]],
+        travel=np.ones((2, 3)),
+        available=[True, True],
+        inbound=[-1, -1],
+        open_units=[[1, 0], [0, 0], [0, 0]],
+        variant=Variant.SPLIT_BOTH,
+    )
+    start = replace(
+        nothing(data),
+        slot=np.array([[True, False, True], [True, False, False]]),
+        line_station=np.array([0, 2, 0]),
+        pod_station=np.array([0, 2]),
+    )
+    assert violations(data, start) == []
+    found = neighbourhood.solve(data, start=start)
+    assert violations(data, found.required) == []
+    assert found.objective <= objective(data, start)
