@@ -52,4 +52,5 @@ def by_programme(
         wall_s=time.perf_counter() - began,
         build_s=build_s + found.build_s,
         work=found.work,
+        built=found.built,
     )

@@ -22,6 +22,7 @@ from rmfs.solvers.models.planning import (
     violations,
 )
 from rmfs.solvers.models.planning.compiled import found, visits
+from rmfs.solvers.models.planning.program import Programme
 
 METHODS = methods()
 TINY: list[dict[str, int]] = [
@@ -225,3 +226,10 @@ def test_nothing_to_do(method: str) -> None:
     still = solve(replace(data, visits=0), method)
     assert still.required.pods == ((),)
     assert still.required.order_station.tolist() == [-1, 0]
+
+
+@pytest.mark.parametrize("method", ["cp_sat", "highs"])
+def test_exact_methods_state_the_size_of_their_program(method: str) -> None:
+    """The pacing `work` charges for every nonzero."""
+    data = hand_made()
+    assert solve(data, method).built == Programme(data).linear.nonzeros > 0
