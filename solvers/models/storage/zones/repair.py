@@ -12,7 +12,8 @@ def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
     """Turn an almost feasible table of pods per class and zone into an exactly feasible one.
 
     Negative numbers become 0. Each row is scaled so that its sum is the number of pods of the
-    class. Then excess pods of each zone are moved to zones with room, in the order of the zones.
+    class; the pods of a row of zeros are spread over the zones in proportion to their places. Then
+    excess pods of each zone are moved to zones with room, in the order of the zones.
 
     Parameters
     ----------
@@ -29,7 +30,7 @@ def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
     total = fixed.sum(axis=1)
     some = total > 0
     fixed[some] *= (data.pods[some] / total[some])[:, np.newaxis]
-    fixed[~some] = data.pods[~some, np.newaxis] * (data.places / max(data.places.sum(), 1.0))
+    fixed[~some] = data.pods[~some, np.newaxis] * (data.places / (data.places.sum() or 1.0))
     room = data.places - fixed.sum(axis=0)
     for full in np.flatnonzero(room < 0).tolist():
         for free in np.flatnonzero(room > 0).tolist():
@@ -38,7 +39,7 @@ def repaired(data: Zones, standing: NDArray[np.float64]) -> NDArray[np.float64]:
                 break
             # taken from all classes in proportion
             part = fixed[:, full] * (amount / fixed[:, full].sum())
-            fixed[:, full] -= part
+            fixed[:, full] = np.maximum(fixed[:, full] - part, 0.0)
             fixed[:, free] += part
             room[full] += amount
             room[free] -= amount

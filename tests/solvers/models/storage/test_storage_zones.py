@@ -21,6 +21,7 @@ from rmfs.solvers.models.storage.zones import (
     violations,
 )
 from rmfs.solvers.models.storage.zones.prices import expected_stay_h
+from rmfs.solvers.models.storage.zones.repair import repaired
 
 SHAPES = list(product((1, 2, 4), (1, 2, 5)))
 """Few shapes, as each is compiled once."""
@@ -188,6 +189,19 @@ def test_stopped_early_it_still_gives_a_feasible_plan_and_a_bound() -> None:
         stopped = solve(data, limits=Limits(iterations=iterations))
         assert not violations(data, stopped.required)
         assert stopped.bound <= best + 1e-6 <= stopped.objective + 2e-6
+
+
+def test_a_repaired_table_is_feasible_for_fractions_of_places_and_full_zones() -> None:
+    """If the solver fails, its table is zero; if a zone has no places, all its pods move."""
+    few = Zones([[1.0, 2.0]], [1.0], [0.5], [0.3, 0.4], [0.0, 0.0])
+    assert not violations(few, ZonePlan(repaired(few, np.zeros((1, 2))), np.zeros(2)))
+    rng = np.random.default_rng(1)
+    for _ in range(100):
+        pods = rng.random(3)
+        places = pods.sum() * np.array([0.0, 0.4, 1.0])
+        full = Zones(np.ones((3, 3)), np.ones(3), pods, places, np.zeros(3))
+        crowded = [1.0, 0.05, 0.05] * rng.random((3, 3))
+        assert not violations(full, ZonePlan(repaired(full, crowded), np.zeros(3)))
 
 
 def test_too_few_places_and_no_pods() -> None:
