@@ -66,6 +66,8 @@ class Inventory:
         Units ordered since time zero, shape (K,).
     wanted
         Units ordered and neither picked nor withdrawn, whether bound or not, shape (K,).
+    withdrawn_units
+        Units ordered and withdrawn before they were picked, of all SKUs.
     total_capacity, stored_space, promised_space
         Sums of `capacity`, `used` and `promised` over all pods, in space units.
     """
@@ -108,6 +110,7 @@ class Inventory:
         self._inbound_station = [-1] * pods
         self.total_capacity = float(capacity.sum())
         self.stored_space = 0.0
+        self.withdrawn_units = 0
         self.promised_space = 0.0
 
     @property
@@ -179,6 +182,7 @@ class Inventory:
         """Record that units of an order in the backlog are withdrawn; `ordered` stays the same."""
         self._uncommitted[sku] += units
         self._wanted[sku] -= units
+        self.withdrawn_units += units
 
     def commit(self, sku: int, units: int) -> None:
         """Subtract units from `free_stock`, or add them if their number is negative.

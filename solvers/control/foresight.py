@@ -88,4 +88,5 @@ class Foresight:
 
     def _picked(self) -> int:
         inventory = self._view.inventory
-        return int(inventory.ordered.sum() - inventory.wanted.sum())
+        done = int(inventory.ordered.sum() - inventory.wanted.sum())
+        return done - inventory.withdrawn_units

@@ -153,3 +153,14 @@ def test_a_buffer_time_is_refused_where_questions_have_a_period() -> None:
         choose(Problem.PSA, {"name": "prices", "buffer_s": 60.0}, "test")
     for name in ("placement", "stays"):
         choose(Problem.PSA, {"name": name, "buffer_s": 60.0}, "test")
+
+
+def test_units_that_orders_lose_do_not_count_as_picked() -> None:
+    """Otherwise, pile-on and rate would be those of 1,000 units that nobody picked."""
+    situation = carried()
+    foresight = situation.make(PlacementControl).foresight
+    pile_on, rate = foresight.pile_on, foresight.units_per_h.sum()
+    situation.world.inventory.demand(1, 1000)
+    situation.world.inventory.undemand(1, 1000)
+    assert foresight.pile_on == pile_on
+    assert foresight.units_per_h.sum() == pytest.approx(rate)
