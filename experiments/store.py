@@ -14,6 +14,7 @@ inputs are restored.
 from __future__ import annotations
 
 import fcntl
+import hashlib
 import json
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -135,7 +136,7 @@ class Store:
                 for first in range(0, len(chunk), FEW)
             ]
             table = _together(parts)
-            self._write(self.folder / RUNS / f"{MERGED}{chunk[0].stem}.parquet", table)
+            self._write(self.folder / RUNS / f"{MERGED}{_hash_of(chunk)}.parquet", table)
             # a reader that comes now meets some rows twice and drops the doubles
             for path in chunk:
                 path.unlink()
@@ -270,6 +271,11 @@ def _read_failure(path: Path, keys: Sequence[str]) -> dict[str, Any]:
     if lacking:
         raise _corrupted(path, f"no {', '.join(lacking)}")
     return dict(told)
+
+
+def _hash_of(chunk: Sequence[Path]) -> str:
+    """Return a hash of the runs in these files, so that other runs are merged into another file."""
+    return hashlib.sha256(" ".join(path.stem for path in chunk).encode()).hexdigest()[:24]
 
 
 def _corrupted(path: Path, why: str) -> InputError:

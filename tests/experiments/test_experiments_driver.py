@@ -22,6 +22,8 @@ from rmfs.experiments.running.local import LocalProcesses
 from rmfs.experiments.store import Store
 from rmfs.instances import ROOT
 
+CODE = {"rmfs_version": "", "git_commit": "", "code": ""}
+
 
 class Notes(Silent):
     """A watcher that remembers what it was told."""
@@ -242,9 +244,21 @@ def test_small_files_are_merged(design, store):
     assert table(store.folder) == before
     # a double, as an interruption between merging and clearing away would leave it
     job = plan.job(plan.arms[0], 1)
-    store.add(job, work(job), {"rmfs_version": "", "git_commit": "", "code": ""})
+    store.add(job, work(job), CODE)
     assert table(store.folder) == before
     assert store.finished() == {plan.job(arm, r).key for arm in plan.arms for r in (1, 2, 3)}
+
+
+def test_merging_again_loses_no_run(design, store):
+    """Two runs are made again, one of them the first of those merged before."""
+    plan = experiments.plan(design())
+    drive(plan, store, Inline())
+    store.merge(at_least=2)
+    jobs = sorted((plan.job(arm, r) for arm in plan.arms for r in (1, 2, 3)), key=lambda j: j.key)
+    for job in (jobs[0], jobs[-1]):
+        store.add(job, work(job), CODE)
+    store.merge(at_least=2)
+    assert store.finished() == {job.key for job in jobs}
 
 
 def test_what_is_half_written_is_never_seen(design, store):
