@@ -46,7 +46,8 @@ ORIGIN = ("run", "arm_digest", "replication", "arm", "design", "design_hash")
 """Columns of a stored row, before the footprint, that identify the run."""
 
 CODE = ("rmfs_version", "git_commit", "code")
-PROVENANCE = (*CODE, "host", "elapsed_s", "cpu_s", "finished")
+FINISHED = "finished"
+PROVENANCE = (*CODE, "host", "elapsed_s", "cpu_s", FINISHED)
 """Columns of a stored row, after the footprint, on how the run was made; not reproducible."""
 
 COLUMNS = [*ORIGIN, *names("footprint"), *PROVENANCE]
@@ -155,6 +156,8 @@ class Store:
     def rows(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
         """Read all rows, one per run; the frame is empty if there are none.
 
+        If a run was repeated, its row is that of the last time.
+
         Parameters
         ----------
         columns
@@ -166,9 +169,10 @@ class Store:
             If a file is corrupted.
         """
         wanted = None if columns is None else list(dict.fromkeys(["run", *columns]))
+        read = None if wanted is None else [*wanted, FINISHED]
         for _ in range(_ATTEMPTS):
             try:
-                tables = [_rows(path, wanted) for path in sorted(self._files())]
+                tables = [_rows(path, read) for path in sorted(self._files())]
                 break
             except FileNotFoundError:
                 continue  # merged in between
@@ -176,8 +180,8 @@ class Store:
             raise InputError(f"{self.folder / RUNS}: files disappear while they are read")
         if not tables:
             return pd.DataFrame(columns=pd.Index(wanted or COLUMNS))
-        frame: pd.DataFrame = _together(tables).to_pandas()
-        return frame.drop_duplicates("run", keep="last", ignore_index=True)
+        frame = _newest(_together(tables).to_pandas())
+        return frame if wanted is None or FINISHED in wanted else frame.drop(columns=FINISHED)
 
     def finished(self, tables: Sequence[str] = ()) -> set[str]:
         """Return the keys of the finished runs for which all of `tables` are stored."""
@@ -251,6 +255,12 @@ def _rows(path: Path, columns: Sequence[str] | None) -> pa.Table:
         if name not in table.column_names or table[name].to_pandas().isna().any():
             raise _corrupted(path, f"{name} is empty in a row")
     return table
+
+
+def _newest(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the row of each run that was finished last."""
+    in_time = rows.sort_values(FINISHED, kind="stable", na_position="first")
+    return in_time.drop_duplicates("run", keep="last").sort_index(ignore_index=True)
 
 
 def _read_failure(path: Path, keys: Sequence[str]) -> dict[str, Any]:

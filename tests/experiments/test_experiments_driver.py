@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -259,6 +260,23 @@ def test_merging_again_loses_no_run(design, store):
         store.add(job, work(job), CODE)
     store.merge(at_least=2)
     assert store.finished() == {job.key for job in jobs}
+
+
+def test_the_row_of_a_repeated_run_is_that_of_the_last_time(design, store):
+    """The rows belong to the same runs as the tables, also if earlier ones were merged."""
+
+    def slower(job):
+        done = work(job)
+        return replace(done, footprint=done.footprint.assign(units_per_h=1.0), elapsed_s=2.0)
+
+    drive(experiments.plan(design()), store, Inline())
+    store.merge(at_least=2)
+    drive(experiments.plan(design(keep=["series"])), store, Inline(do=slower))
+    for _ in range(2):
+        assert set(experiments.load(store.folder)["units_per_h"]) == {1.0}
+        assert set(store.rows(["elapsed_s"])["elapsed_s"]) == {2.0}
+        assert set(store.rows(["elapsed_s"])) == {"run", "elapsed_s"}
+        store.merge(at_least=2)
 
 
 def test_what_is_half_written_is_never_seen(design, store):
