@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
+import numpy as np
 import pandas as pd
 
 from rmfs.experiments.design.stages import columns, schedule
@@ -142,10 +143,14 @@ class _Driver:
         """Read the columns of finished runs on which the stages depend."""
         if not self.plan.design.stages:
             return
-        rows = self.store.rows(["arm_digest", "replication", *self.looked_at])
-        names = {arm.digest: arm.name for arm in self.plan.arms}
-        rows = rows[rows["arm_digest"].isin(list(names)) & rows["run"].isin(list(self.finished))]
-        rows = rows.assign(arm=rows["arm_digest"].map(names))
+        rows = self.store.rows(["arm_digest", "replication", "seed", *self.looked_at])
+        arms = {arm.digest: arm for arm in self.plan.arms}
+        rows = rows[rows["arm_digest"].isin(list(arms)) & rows["run"].isin(list(self.finished))]
+        told = zip(rows["arm_digest"], rows["replication"], rows["seed"], strict=True)
+        # with or without common random numbers, the same replication has another seed
+        right = [self.plan.seed(arms[arm], int(number)) == seed for arm, number, seed in told]
+        rows = rows[np.array(right, dtype=bool)]
+        rows = rows.assign(arm=[arms[digest].name for digest in rows["arm_digest"]])
         self.known = rows[["arm", "replication", *self.looked_at]].to_dict("records")
 
     def _todo(self, now: Schedule) -> list[Job]:

@@ -10,6 +10,7 @@ from stand_in import Inline, footprint
 
 from rmfs import experiments
 from rmfs.errors import InputError
+from rmfs.experiments.complete import lacking
 from rmfs.experiments.design.stages import schedule
 from rmfs.experiments.running.driver import drive
 from rmfs.experiments.running.job import Outcome
@@ -139,3 +140,22 @@ def test_replications_of_stages_are_not_replaced(design):
     assert experiments.plan(path).design.stages
     with pytest.raises(InputError, match=r"design\.toml: stages: .* replications cannot be set"):
         experiments.plan(path, replications=1)
+
+
+@pytest.mark.parametrize("common", [True, False])
+def test_stages_decide_by_the_seeds_of_the_plan(design, tmp_path, common):
+    """Earlier runs in the folder have other seeds: with, or without, common random numbers."""
+    stages = [
+        {"name": "screening", "seeds": [1, 2]},
+        {"name": "final", "seeds": [3, 4], "arms": {"best": 1, "by": "units_per_h"}},
+    ]
+    factors = {"layout.robots": [15, 16], "controllers.psa": ["nearest"]}
+    for shared in (not common, common):
+        path = design(seeds=None, stages=stages, factors=factors, common_random_numbers=shared)
+        plan = experiments.plan(path)
+        store = Store(tmp_path / "out")
+        drive(plan, store, Inline())
+    assert lacking(plan, store) == ""
+    drive(plan, Store(tmp_path / "alone"), Inline())
+    first, second = (experiments.load(tmp_path / name) for name in ("out", "alone"))
+    assert runs(first) == runs(second)
