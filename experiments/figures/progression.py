@@ -60,14 +60,15 @@ def progression(
 def per_bin(series: pd.DataFrame, column: str, bin_s: float) -> pd.DataFrame:
     """Return the hourly rate of a count for each run and each bin of time.
 
-    The columns are `arm`, `replication`, `hour` (the middle of the bin) and `rate`. An incomplete
-    last bin is left out.
+    The columns are `arm`, `replication`, `hour` (the middle of the bin) and `rate`, which is nan if
+    the run has no counts. An incomplete last bin is left out.
     """
     require(series, "arm", "replication", "time_s", "interval_s", column)
     middle = series["time_s"] - series["interval_s"] / 2
     number = np.floor(middle / bin_s).astype(int)
     keys = [series["arm"], series["replication"], number.rename("bin")]
-    sums = series[[column, "interval_s"]].groupby(keys, sort=False).sum().reset_index()
+    sums = series[[column, "interval_s"]].groupby(keys, sort=False).sum(min_count=1)
+    sums = sums.reset_index()
     full = sums[sums["interval_s"] >= bin_s * (1 - 1e-9)]
     return full.assign(
         hour=(full["bin"] + 0.5) * bin_s / 3600.0,

@@ -38,7 +38,8 @@ def rates(
 
     Returns
     -------
-    One row per run: the keys, and the amount per hour of each column.
+    One row per run: the keys, and the amount per hour of each column, which is nan if
+    the run has no amounts.
 
     Raises
     ------
@@ -50,6 +51,6 @@ def rates(
     inside = series[(begin >= start_s - 1e-6) & (series["time_s"] <= end_s + 1e-6)]
     if inside.empty:
         raise InputError(f"window {start_s:g} to {end_s:g} s: no interval of the runs lies in it")
-    sums = inside.groupby(list(keys), sort=False)[[*columns, "interval_s"]].sum()
+    sums = inside.groupby(list(keys), sort=False)[[*columns, "interval_s"]].sum(min_count=1)
     per_hour = sums[list(columns)].div(sums["interval_s"] / 3600.0, axis=0)
     return per_hour.reset_index()

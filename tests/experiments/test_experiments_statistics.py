@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 from scipy import stats
 
 from rmfs.errors import InputError
+from rmfs.experiments.figures.progression import per_bin, progression
 from rmfs.experiments.statistics import (
     against,
     anova,
@@ -336,6 +338,23 @@ def test_rates_of_a_window_count_whole_intervals_only():
     assert rates(series, ["orders"])["orders"].tolist() == [10.0, 100.0]
     with pytest.raises(InputError, match="no interval"):
         rates(series, ["orders"], start_s=3000)
+
+
+def test_a_run_without_amounts_has_no_rate():
+    """A series without energy has empty cells."""
+    times = {"time_s": [900.0, 1800.0], "interval_s": 900.0}
+    series = pd.concat(
+        [
+            pd.DataFrame({"arm": "a", "replication": 1, **times, "energy_wh": [1.0, 3.0]}),
+            pd.DataFrame({"arm": "b", "replication": 1, **times, "energy_wh": np.nan}),
+        ]
+    )
+    for found in (rates(series, ["energy_wh"])["energy_wh"], per_bin(series, "energy_wh", 1800.0)):
+        by_arm = found["rate"] if isinstance(found, pd.DataFrame) else found
+        assert by_arm.tolist() == [8.0, pytest.approx(np.nan, nan_ok=True)]
+    ax = Figure().subplots()
+    progression(series, "energy_wh", ax, bin_s=1800.0)
+    assert [len(line.get_xdata()) for line in ax.lines] == [1, 0]
 
 
 @pytest.mark.parametrize("seeds", coverage.SEEDS)
