@@ -247,7 +247,7 @@ def table(
     chosen = list(columns or tables.COLUMNS)
     require_columns(frame, chosen)
     if anova:
-        shown = anovas(made, frame, chosen, interactions=interactions)
+        shown = anovas(made, frame, chosen, confidence, interactions=interactions)
     else:
         shown = [chosen_table(made, frame, chosen, baseline, confidence, bootstrap=bootstrap)]
         if across is not None:

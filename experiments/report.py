@@ -73,7 +73,7 @@ def _render(
     if len(frame["arm"].unique()) > 1:
         found = tables.differences(frame, columns, base, confidence=confidence)
         shown.append((f"Differences to {base}", found))
-    shown += _analyses(one, frame, columns)
+    shown += _analyses(one, frame, columns, confidence)
     pictures = [
         (f"{title}: {heading(column)}", content)
         for column in columns
@@ -103,13 +103,19 @@ def _render(
 
 
 def _analyses(
-    one: Opened, frame: pd.DataFrame, columns: list[str]
+    one: Opened, frame: pd.DataFrame, columns: list[str], confidence: float
 ) -> list[tuple[str, tables.Table]]:
     """Return an analysis of variance for each column with enough factors and runs."""
     made = []
     for column in columns:
         try:
-            found = anova(frame, column, one.plan.factors, names=one.plan.short_names)
+            found = anova(
+                frame,
+                column,
+                one.plan.factors,
+                confidence=confidence,
+                names=one.plan.short_names,
+            )
         except InputError:
             continue
         made.append((f"Analysis of variance: {heading(column)}", tables.effects(found, column)))

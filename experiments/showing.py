@@ -40,16 +40,28 @@ def write_table(
 
 
 def anovas(
-    made: Plan, frame: pd.DataFrame, columns: list[str], *, interactions: bool
+    made: Plan,
+    frame: pd.DataFrame,
+    columns: list[str],
+    confidence: float,
+    *,
+    interactions: bool,
 ) -> list[Table]:
     """Return an analysis of variance for each column."""
     from rmfs.experiments import tables
     from rmfs.experiments.statistics import anova
 
-    named, factors = made.short_names, made.factors
     return [
         tables.effects(
-            anova(frame, column, factors, interactions=interactions, names=named), column
+            anova(
+                frame,
+                column,
+                made.factors,
+                interactions=interactions,
+                confidence=confidence,
+                names=made.short_names,
+            ),
+            column,
         )
         for column in columns
     ]

@@ -203,6 +203,15 @@ def test_report_is_one_file_with_everything(made, design, capsys):
     assert main(["experiment", "report", made, "--baseline", "x"]) == 2
 
 
+def test_analyses_of_variance_have_the_confidence_that_is_asked_for(made, capsys):
+    chosen = ["-c", "units_per_h", "--confidence", "0.9"]
+    assert main(["experiment", "table", made, "--anova", *chosen]) == 0
+    assert "the 90% confidence interval" in " ".join(told(capsys).split())
+    assert main(["experiment", "report", made, *chosen]) == 0
+    text = Path("results/tiny/report.html").read_text()
+    assert "the 90% confidence interval" in text and "95%" not in text
+
+
 def test_experiments_are_listed(made, capsys):
     assert main(["experiment", "list"]) == 0
     out = told(capsys)
