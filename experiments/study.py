@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from rmfs.measure.base import Measure
 
 COLUMN = "units_per_h"
+NO_LEVEL = "none"
+"""Name of the level None of a factor in tables and plots."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -65,7 +67,7 @@ class Study:
             Columns of the footprint. Default `units_per_h`.
         by
             A factor. Each of its levels gets one row, for which the runs of each seed are averaged
-            over all other factors. Default: one row per arm.
+            over all other factors; the level None is shown as "none". Default: one row per arm.
 
         Raises
         ------
@@ -180,7 +182,9 @@ class Study:
             raise InputError(f"{by}: no such factor; factors: {', '.join(self.plan.factors)}")
         if columns == [by]:
             raise InputError(f"{by}: is the factor given as `by`")
-        grouped = self.frame.groupby([by, "replication"], sort=False)
+        levels = self.frame[by].astype(object)
+        frame = self.frame.assign(**{by: levels.where(levels.notna(), NO_LEVEL)})
+        grouped = frame.groupby([by, "replication"], sort=False)
         return grouped[columns].mean().reset_index()
 
 

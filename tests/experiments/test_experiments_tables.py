@@ -12,6 +12,7 @@ from stand_in import Inline
 from rmfs import experiments
 from rmfs.errors import InputError
 from rmfs.experiments import arranging, provenance, tables
+from rmfs.experiments.design.planning import plan_of
 from rmfs.experiments.figures import effects, front, interaction, pareto, progression
 from rmfs.experiments.figures.progression import per_bin
 from rmfs.experiments.figures.style import axis_label, saving
@@ -19,6 +20,7 @@ from rmfs.experiments.plotting import KINDS, Wish, draw
 from rmfs.experiments.running.driver import drive
 from rmfs.experiments.statistics import anova
 from rmfs.experiments.store import Store
+from rmfs.experiments.study import Study
 
 RULES = ("nearest", "random")
 
@@ -315,6 +317,22 @@ def test_counts_that_some_runs_do_not_have():
         some = frame[frame["arm"].isin([*arms])]
         with pytest.raises(InputError, match=f"no arm with values to compare with {baseline}"):
             tables.differences(some, ["charges"], baseline)
+
+
+def test_the_level_none_is_a_level(design, tmp_path):
+    """As the number of slots of a put wall, of which there are any number by default."""
+    slots = "scenario.packing.slots"
+    table = {**experiments.plan(design()).table, "factors": {slots: [None, 4, 8]}}
+    plan = plan_of(table, tmp_path, "test")
+    drive(plan, Store(tmp_path / "out"), Inline())
+    study = Study(plan, tmp_path / "out")
+    assert study.table(by=slots).frame.index.tolist() == ["none", 4, 8]
+    apart = study.compare(by=slots)
+    assert apart.frame.index.tolist() == [4, 8] and "Arm minus none" in apart.caption
+    by_arm = study.compare().frame["units_per_h", "difference"].tolist()
+    assert apart.frame["units_per_h", "difference"].tolist() == pytest.approx(by_arm)
+    assert study.compare(by=slots, baseline=8).frame.index.tolist() == ["none", 4]
+    assert len(study.plot(by=slots).axes[0].get_yticks()) == 3
 
 
 def test_an_arm_without_a_value_is_not_on_the_front():
