@@ -90,8 +90,10 @@ def _text(level: object) -> str:
 
 
 def _told(counts: list[pd.Series]) -> str:
-    """Return a sentence on the number of seeds per cell; empty if there are no counts."""
+    """Return a sentence on the number of seeds per cell; empty if it is unknown."""
     if not counts:
         return ""
     least, most = int(counts[0].min()), int(counts[0].max())
+    if most == 0:  # differences of arms with independent seeds have no pairs
+        return ""
     return f" {least} seeds per cell." if least == most else f" {least} to {most} seeds per cell."

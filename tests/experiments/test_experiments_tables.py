@@ -100,6 +100,14 @@ def test_factors_as_columns_and_side_by_side(results):
         arranging.across(table, plan, "poa")
 
 
+def test_cells_of_independent_seeds_do_not_count_pairs(design, tmp_path):
+    plan = experiments.plan(design(common_random_numbers=False))
+    drive(plan, Store(tmp_path / "out"), Inline())
+    frame = experiments.load(tmp_path / "out")
+    table = tables.differences(frame, ["units_per_h"], "robots=8,psa=nearest")
+    assert arranging.across(table, plan, "psa").caption == table.caption
+
+
 def test_anova_as_a_table(results):
     plan, frame, _ = results
     found = anova(frame, "units_per_h", plan.factors, names=plan.short_names)
