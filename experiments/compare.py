@@ -156,10 +156,14 @@ def _compared(first: Side, other: Side, confidence: float) -> Comparison:
             rows[column] = {**means, **told}
     outputs = pd.DataFrame.from_dict(rows, orient="index")
     outputs.index.name = "column"
-    repeating = [*reproducible("footprint"), *(c.name for c in learnt() if not c.measured)]
-    shared = [c for c in repeating if c in first.rows and c in other.rows]
+    shared = [c for c in _repeating() if c in first.rows and c in other.rows]
     same = len(first.rows) == len(other.rows) and _text(first, shared) == _text(other, shared)
     return Comparison(first, other, _input_differences(first, other), outputs, len(common), same)
+
+
+def _repeating() -> list[str]:
+    """Return the reproducible columns of the footprint, with those of registered measures."""
+    return [*reproducible("footprint"), *(c.name for c in learnt() if not c.measured)]
 
 
 def _by_seed(side: Side) -> pd.DataFrame:
@@ -324,7 +328,7 @@ def chosen_columns(
         return list(columns)
     if everything:
         # what the clock has measured is no outcome of what was simulated
-        outcomes = {*reproducible("footprint")}
+        outcomes = {*_repeating()}
         differ = comparison.outputs["difference"] != 0
         return [c for c in there if c in outcomes and differ[c]]
     return [c for c in MAIN if c in there]

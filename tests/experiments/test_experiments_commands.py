@@ -15,6 +15,7 @@ from rmfs.cli import main
 from rmfs.experiments.results import to_csv
 from rmfs.experiments.running.driver import drive
 from rmfs.experiments.store import Store
+from rmfs.measure.columns import REAL, Column
 
 
 @pytest.fixture
@@ -360,6 +361,18 @@ def test_compare_takes_the_seeds_with_a_value_on_both_sides(tmp_path, monkeypatc
     assert row[1:5] == ["15", "45", "30", "+200.0%"]
     assert "late_by_mean_s: 2 of these seeds have a value on both sides" in out
     assert "units_per_h: " not in out
+
+
+def test_compare_shows_all_columns_of_own_measures(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    own = Column("crowd_mean", REAL, "robots", "Own measure")
+    monkeypatch.setattr("rmfs.measure.dictionary._LEARNT", {own.name: own})
+    for name, crowd in (("a", 3.0), ("b", 4.0)):
+        rows = {"seed": [1, 2], "units_per_h": [1.0, 2.0], "crowd_mean": crowd}
+        pd.DataFrame(rows).to_csv(f"{name}.csv", index=False)
+    assert main(["compare", "a.csv", "b.csv", "--all"]) == 0
+    out = told(capsys)
+    assert "crowd_mean" in out and "units_per_h" not in out
 
 
 def test_compare_refuses_several_rows_for_a_seed(tmp_path, monkeypatch, capsys):
