@@ -250,7 +250,7 @@ def _experiment_sides(path: Path, arm: str, source: str) -> list[Side]:
 
 def _table_sides(path: Path, arm: str) -> list[Side]:
     try:
-        frame = pd.read_csv(path) if path.suffix.lower() == ".csv" else pd.read_parquet(path)
+        frame = _read_csv(path) if path.suffix.lower() == ".csv" else pd.read_parquet(path)
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read ({error})") from None
     if not set(frame.columns) & set(numbers()):
@@ -267,6 +267,14 @@ def _table_sides(path: Path, arm: str) -> list[Side]:
     ]
 
 
+def _read_csv(path: Path) -> pd.DataFrame:
+    """Read a table; the name of an arm is text, even if it is a word such as None or NA."""
+    frame = pd.read_csv(path)
+    if "arm" in frame:
+        frame["arm"] = pd.read_csv(path, usecols=["arm"], dtype=str, keep_default_na=False)["arm"]
+    return frame
+
+
 def _constant(frame: pd.DataFrame) -> dict[str, Any]:
     """Return the inputs and factors that have the same value in all rows."""
     inputs = ("layout", "scenario", "controllers", "warmup_s", "duration_s", "robots", "pods")
@@ -275,6 +283,8 @@ def _constant(frame: pd.DataFrame) -> dict[str, Any]:
 
 
 def _plain(value: Any) -> Any:
+    if pd.isna(value):
+        return None
     return value.item() if isinstance(value, np.generic) else value
 
 

@@ -363,6 +363,17 @@ def test_compare_takes_the_seeds_with_a_value_on_both_sides(tmp_path, monkeypatc
     assert "units_per_h: " not in out
 
 
+def test_compare_reads_arms_and_inputs_of_tables_as_they_are_written(tmp_path, monkeypatch, capsys):
+    """No arm is left out because of its name; an input that is set nowhere does not differ."""
+    monkeypatch.chdir(tmp_path)
+    rows = {"arm": ["a", "a", "None", "None"], "seed": [1, 2] * 2, "scenario.packing.slots": None}
+    pd.DataFrame({**rows, "units_per_h": [1.0, 2.0, 3.0, 5.0]}).to_csv("t.csv", index=False)
+    assert main(["compare", "t.csv"]) == 0
+    out = told(capsys)
+    assert "other     t.csv#None" in out and "paired by 2 common seeds" in out
+    assert "scenario.packing.slots" not in out and "input: the same" in out
+
+
 def test_compare_shows_all_columns_of_own_measures(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     own = Column("crowd_mean", REAL, "robots", "Own measure")
