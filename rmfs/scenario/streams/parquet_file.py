@@ -35,21 +35,14 @@ def read_parquet(path: Path, rows: Rows, problems: Problems) -> None:
     OSError
         If the file cannot be read.
     """
-    number = 0
     try:
-        with parquet.ParquetFile(
-            path,
-            thrift_string_size_limit=LARGEST_HEADER,
-            thrift_container_size_limit=LARGEST_HEADER,
-        ) as file:
+        with _opened(path) as file:
             columns = Columns(file.schema_arrow.names, rows)
             if file.metadata.num_rows > MOST_ROWS:
                 problems.add(f"more than {MOST_ROWS} rows")
                 return
-            for batch in file.iter_batches(ROWS_AT_ONCE):
-                for fields in zip(*(column.to_pylist() for column in batch.columns), strict=True):
-                    number += 1
-                    rows.take(number, columns.arranged([_text(field) for field in fields]))
+            for number, fields in enumerate(_rows(file), start=1):
+                rows.take(number, columns.arranged(fields))
     except (pa.ArrowException, OSError) as error:
         if isinstance(error, OSError) and error.errno is not None:
             raise
@@ -67,22 +60,32 @@ def parquet_rows(path: Path) -> Iterator[list[str]]:
         If the file cannot be read, or has more than `MOST_ROWS` rows.
     """
     try:
-        with parquet.ParquetFile(
-            path,
-            thrift_string_size_limit=LARGEST_HEADER,
-            thrift_container_size_limit=LARGEST_HEADER,
-        ) as file:
+        with _opened(path) as file:
             if file.metadata.num_rows > MOST_ROWS:
                 raise InputError(f"{path}: more than {MOST_ROWS} rows")
             yield list(file.schema_arrow.names)
-            for batch in file.iter_batches(ROWS_AT_ONCE):
-                for fields in zip(*(column.to_pylist() for column in batch.columns), strict=True):
-                    yield [_text(field) for field in fields]
+            yield from _rows(file)
     except (pa.ArrowException, OSError) as error:
         if isinstance(error, OSError) and error.errno is not None:
             raise InputError(f"{path}: cannot be read ({error.strerror})") from None
         told = str(error).splitlines()[0]
         raise InputError(f"{path}: not a complete Parquet file ({told:.200})") from None
+
+
+def _opened(path: Path) -> parquet.ParquetFile:
+    """Open a file whose metadata are not too large."""
+    return parquet.ParquetFile(
+        path,
+        thrift_string_size_limit=LARGEST_HEADER,
+        thrift_container_size_limit=LARGEST_HEADER,
+    )
+
+
+def _rows(file: parquet.ParquetFile) -> Iterator[list[str]]:
+    """Yield the fields of each row as text."""
+    for batch in file.iter_batches(ROWS_AT_ONCE):
+        for fields in zip(*(column.to_pylist() for column in batch.columns), strict=True):
+            yield [_text(field) for field in fields]
 
 
 def _text(field: Any) -> str:
