@@ -268,24 +268,6 @@ impl Record {
         (step.start + before, line.iter().enumerate().map(of).collect())
     }
 
-    /// When a move enters a zone, delays included; `None` if it does not, or starts inside.
-    pub fn enters_zone(
-        &self,
-        network: &Network,
-        kind: &Kind,
-        robot: u32,
-        step: &Move,
-        zone: u32,
-    ) -> Option<Us> {
-        let planned = enters_zone(network, kind, step, zone);
-        if planned.is_none() || step.late == 0 || step.ride {
-            return planned;
-        }
-        let (_, reached) = self.reached(network, kind, robot, step);
-        let within = |&&(node, _): &&(u32, Us)| network.zone[node as usize] == zone;
-        reached.iter().find(within).map(|&(_, time)| time)
-    }
-
     /// A move as rows of the trace: the turn before it, if any, and the run or ride. A delayed run
     /// is recorded waypoint by waypoint.
     pub fn rows(

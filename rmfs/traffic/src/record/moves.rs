@@ -1,7 +1,7 @@
 //! Quantities of a single move: its turn, the part completed by a time, the time at which it enters
 //! a zone.
 
-use super::Totals;
+use super::{Record, Totals};
 use crate::kinematics::Kind;
 use crate::network::{NONE, Network};
 use crate::search::Move;
@@ -45,4 +45,24 @@ pub fn enters_zone(network: &Network, kind: &Kind, step: &Move, zone: u32) -> Op
     let length = line.last()?.1;
     let (_, distance) = line.iter().find(|(node, _)| network.zone[*node as usize] == zone)?;
     Some(step.start + floor_us(kind.run(length).time_at(*distance)))
+}
+
+impl Record {
+    /// When a move enters a zone, delays included; `None` if it does not, or starts inside.
+    pub fn enters_zone(
+        &self,
+        network: &Network,
+        kind: &Kind,
+        robot: u32,
+        step: &Move,
+        zone: u32,
+    ) -> Option<Us> {
+        let planned = enters_zone(network, kind, step, zone);
+        if planned.is_none() || step.late == 0 || step.ride {
+            return planned;
+        }
+        let (_, reached) = self.reached(network, kind, robot, step);
+        let within = |&&(node, _): &&(u32, Us)| network.zone[node as usize] == zone;
+        reached.iter().find(within).map(|&(_, time)| time)
+    }
 }
