@@ -81,6 +81,7 @@ impl Network {
             resource,
             resources,
             stations: plan.stations,
+            largest_island: largest(&island),
             island,
             rides_from,
             rides_to,
@@ -199,6 +200,15 @@ fn islands(plan: &Plan, nodes: usize) -> Vec<u32> {
         }
     }
     island
+}
+
+/// Returns the number of waypoints of the largest island, given the island of each waypoint.
+fn largest(island: &[u32]) -> usize {
+    let mut sizes = vec![0; island.len()];
+    for &first in island {
+        sizes[first as usize] += 1;
+    }
+    sizes.into_iter().max().unwrap_or(0)
 }
 
 /// All waypoints of an elevator are one resource: its shaft holds one robot.

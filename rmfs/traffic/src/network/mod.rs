@@ -70,6 +70,8 @@ pub struct Network {
     pub stations: Vec<Vec<u32>>,
     /// Island of each waypoint: a part of the graph connected with others only by elevators.
     pub island: Vec<u32>,
+    /// Number of waypoints of the largest island.
+    pub largest_island: usize,
     rides_from: Vec<Vec<Ride>>,
     rides_to: Vec<Vec<Ride>>,
     x: Vec<f64>,

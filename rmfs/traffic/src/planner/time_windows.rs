@@ -2,11 +2,17 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::network::Network;
 use crate::search::{End, Guide, Move, Outcome, Query};
 use crate::units::FOREVER;
 
 use super::swift::{Load, Swift, Urgency, Waiting};
 use super::{Agent, Answer, Planner, Rhythm, Scene};
+
+/// On floors with more waypoints, unhindered times are computed only on the best ways. On the others
+/// this saves nothing: the search around reservations examines more labels, and the floor is soon
+/// known.
+const LARGE_FLOOR: usize = 4_000;
 
 /// Plans each trip once around the windows that others have reserved.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -24,6 +30,12 @@ pub struct TimeWindows {
     pub waiting: Waiting,
 }
 
+/// Returns which unhindered times are computed for the usual search. Both give the earliest arrival;
+/// of several ways that arrive then, they may choose different ones.
+fn guide_on(network: &Network) -> Guide {
+    if network.largest_island > LARGE_FLOOR { Guide::Near(0) } else { Guide::Exact }
+}
+
 impl TimeWindows {
     fn plan_one(&mut self, scene: &mut Scene, agent: &Agent) -> Option<Vec<Move>> {
         let mut query = Query {
@@ -38,7 +50,7 @@ impl TimeWindows {
             budget: self.budget.min(agent.effort),
             end: End::ForGood,
             detour: FOREVER,
-            guide: Guide::Exact,
+            guide: guide_on(scene.network),
             times: None,
             guidance: scene.guidance,
         };
