@@ -6,7 +6,6 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,7 @@ import pandas as pd
 
 from rmfs import layout as layouts
 from rmfs.errors import InputError
-from rmfs.measure.dictionary import names
+from rmfs.measure.objective import check_objective, objective_of, require_objective
 from rmfs.simulation.idle_rules import IdleRuleWarning
 from rmfs.simulation.run import simulate
 from rmfs.traffic import TIME_WINDOWS
@@ -103,22 +102,27 @@ class Orders(Task):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for column in self.objective:
-            if column not in names("footprint"):
-                raise InputError(f"objective {column}: is not a column of the footprint")
+        check_objective(self.objective)
         if not self.objective:
             raise InputError("guidance needs at least one objective")
 
     def counted(self, seed: int) -> tuple[pd.DataFrame, pd.DataFrame]:
-        """Return the tables `edges` and `heat` of a run without guidance."""
+        """Return the tables `edges` and `heat` of a run without guidance.
+
+        Raises
+        ------
+        InputError
+            If the objective has no value in this run, or a column of it contains text.
+        """
         run = self._run(seed, {})
+        value = objective_of(run.footprint, self.objective)
+        require_objective(value, self.objective, "without guidance")
         return run.table("edges"), run.table("heat")
 
     def value(self, guidance: Path, seed: int) -> float:
-        """Return the objective of a run; a value that is not finite counts as 0."""
+        """Return the objective of a run; -inf if a column has no finite value."""
         footprint = self._run(seed, {KEY: str(guidance)}).footprint
-        values = [float(footprint[name]) * weight for name, weight in self.objective.items()]
-        return sum(value if isfinite(value) else 0.0 for value in values)
+        return objective_of(footprint, self.objective)
 
     def _run(self, seed: int, more: dict[str, Any]) -> Run:
         given = {**self.set, **more}

@@ -95,9 +95,10 @@ def learn_network(
         seed=seed,
         told=print,
     )
+    made = found.history["steps"].iloc[-1]
     told = (
         f"Trained by rmfs learn-network on {layout}, {scenario}: reward {reward}"
-        f"{', less its mean,' if average else ','} {steps} decisions, seed {seed}; "
+        f"{', less its mean,' if average else ','} {made} decisions, seed {seed}; "
         f"objective {objective}, seeds {seeds}."
     )
     write_text(out, to_toml(named(found, out.stem, told)))

@@ -9,7 +9,6 @@ from __future__ import annotations
 import warnings
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import dataclass, field, replace
-from math import inf, isfinite
 from multiprocessing import get_context
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
@@ -23,7 +22,7 @@ from rmfs.control.linear import default_weights
 from rmfs.control.problems import Problem
 from rmfs.control.settings import ControllerSettings
 from rmfs.errors import InputError
-from rmfs.measure.dictionary import names
+from rmfs.measure.objective import check_objective, objective_of, require_objective
 from rmfs.random import Stream, generator
 from rmfs.simulation.idle_rules import IdleRuleWarning
 from rmfs.simulation.run import simulate
@@ -80,9 +79,7 @@ class Task:
         for problem in self.problems:
             if problem not in valid:
                 raise InputError(f"problem {problem}: must be one of {', '.join(valid)}")
-        for column in self.objective:
-            if column not in names("footprint"):
-                raise InputError(f"objective {column}: is not a column of the footprint")
+        check_objective(self.objective)
         if not self.problems or not self.objective or not self.seeds:
             raise InputError("training needs at least one problem, one objective and one seed")
 
@@ -127,8 +124,6 @@ class Task:
     def value_of(self, settings: ControllerSettings, seed: int) -> float:
         """Simulate one run and return its objective; -inf if a column has no finite value.
 
-        A mean, for example, has no value if nothing happened; such a run must not count as good.
-
         Raises
         ------
         InputError
@@ -138,12 +133,7 @@ class Task:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", IdleRuleWarning)  # some weight vectors are bad
             run = simulate(self.layout, self.scenario, settings, seed=seed, set=given)
-        values = []
-        for name, weight in self.objective.items():
-            if isinstance(run.footprint[name], str):
-                raise InputError(f"objective {name}: is a column of text, not of numbers")
-            values.append(float(run.footprint[name]) * weight)
-        return sum(values) if all(map(isfinite, values)) else -inf
+        return objective_of(run.footprint, self.objective)
 
     def require_value(self, value: float) -> None:
         """Check that the objective had a value in every run with the initial rules.
@@ -158,11 +148,7 @@ class Task:
         InputError
             If the objective had no value in at least one of these runs.
         """
-        if not isfinite(value):
-            raise InputError(
-                f"objective {', '.join(self.objective)}: must have a value in every run with the "
-                "rules before training; choose other columns, or longer runs"
-            )
+        require_objective(value, self.objective, "with the rules before training")
 
     def _kinds(self) -> list[str]:
         return [kind for one in self.problems for kind in TRAINED[Problem(one)].values()]

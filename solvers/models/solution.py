@@ -36,7 +36,9 @@ class Status(Enum):
     """The outcome of a solve."""
 
     OPTIMAL = "optimal"
-    """Values proven to be within the gap limit of the optimum."""
+    """Values proven to be within the gap limit of the optimum. CP-SAT proves this for costs rounded
+    down to at least 1/1024 (`rmfs.solvers.models.backends.cp_sat`); the solution's gap is that with
+    the exact costs."""
 
     FEASIBLE = "feasible"
     """Values that satisfy every constraint, from a heuristic or a search ended by its limit."""

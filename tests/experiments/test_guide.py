@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -118,6 +119,21 @@ def test_wrong_tasks_are_refused() -> None:
         Orders("small", set={"controllers.pp.guidance": "g.json"})
     with pytest.raises(InputError, match=r"scenario\.duration_s: random trips have only"):
         Trips("small", set={"scenario.duration_s": 9.0})
+
+
+def test_an_objective_without_a_value_is_refused() -> None:
+    """In five seconds, no order is completed."""
+    keys = KEYS | {"scenario.duration_s": 5.0}
+    task = Orders("small", (11,), keys, "small", objective={"order_turnover_mean_s": -1.0})
+    with pytest.raises(InputError, match="must have a value in every run without guidance"):
+        optimise(task)
+
+
+def test_guidance_that_leaves_no_value_is_not_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An objective to make small, such as a delay, must not be 0 because nothing happened."""
+    nothing = SimpleNamespace(footprint=pd.Series({"trip_delay_mean_s": np.nan}))
+    monkeypatch.setattr(Orders, "_run", lambda *_: nothing)
+    assert TASK.value(Path("g.json"), 11) == -np.inf
 
 
 def test_the_command_end_to_end(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

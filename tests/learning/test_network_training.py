@@ -232,7 +232,7 @@ def test_training_repeats_and_writes_a_file_that_runs(
         out.parent.mkdir()
         arguments = [
             *("learn-network", "--out", str(out), "--problems", "poa,psa", "--seeds", "1"),
-            *("--steps", "4096", "--checks", "2", "--set", "scenario.duration_s=100"),
+            *("--steps", "4000", "--checks", "2", "--set", "scenario.duration_s=100"),
             # every network is better than this one, so the result is a trained one
             *("--set", "controllers.poa.name=network"),
             *("--set", "controllers.poa.network={decline={constant=-1},linear={age_s=-1}}"),
@@ -240,6 +240,7 @@ def test_training_repeats_and_writes_a_file_that_runs(
         assert main(arguments) == 0
         assert "4096 decisions: objective" in capsys.readouterr().out
         files.append(out.read_text())
+        assert " 4096 decisions, " in files[-1]
     assert files[0] == files[1]
     settings = control.load(tmp_path / "one" / "mine.toml")
     network = settings.to_table()["psa"]["network"]

@@ -131,7 +131,8 @@ def stations(logs: Logs) -> pd.DataFrame:
             "orders_completed": count(orders["station"][done], number),
             "bundles_stored": count(logs.stored_now["station"], number),
             "busy_s": busy,
-            "idle_share": 1.0 - busy / logs.duration_s,
+            # rounding must not make it negative
+            "idle_share": np.maximum(1.0 - busy / logs.duration_s, 0.0),
             "active_share": [_active_share(logs, one) for one in range(number)],
             "units_per_h_at_pile_on": [
                 _at_pile_on(layout, station, piled, with_pickers=logs.world.staff is not None)
