@@ -198,7 +198,8 @@ class Recorder(Observer):
         self.early_trips = self.traffic.trips()
         self.asked.clear()
         self.by_rule.clear()
-        self._before = self._order_counts()
+        if time_s > 0:  # without warm-up, orders that arrive at time 0 are measured
+            self._before = self._order_counts()
 
     def run_ended(self, time_s: float) -> None:
         """Store the counts of `traffic`, and record visits and other periods still in progress."""

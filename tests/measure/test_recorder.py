@@ -9,6 +9,7 @@ from math import isnan
 import pytest
 from fake_run import FakeTraffic, bundle, order, recorded, simulation, world
 
+import rmfs
 from rmfs.measure import Recorder
 from rmfs.measure.log import Log
 
@@ -76,3 +77,10 @@ def test_a_log_keeps_every_value_and_may_be_read_at_any_time():
     assert list(zip(*(told[name].tolist() for name in told), strict=True)) == rows
     with pytest.raises(struct.error):
         log.add(0.0, 2**31, 0, False)
+
+
+def test_without_warm_up_the_first_orders_are_measured() -> None:
+    """At time 0, orders are drawn until the little stock cannot serve another."""
+    keys = {"scenario.stock.initial_share": 0.05, "scenario.duration_s": 10.0}
+    run = rmfs.simulate("small", "small", seed=1, set=keys)
+    assert run.footprint["order_redraws"] == run.world.order_redraws > 0

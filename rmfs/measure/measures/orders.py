@@ -90,29 +90,32 @@ class Backlog(Measure):
             "backlog_orders_mean",
             REAL,
             "orders",
-            "Time average of the number of orders in the backlog",
+            "Time average of the number of orders in the backlog; a split order leaves it when its "
+            "first part is assigned to a station",
             better=LESS,
         ),
         Column(
             "backlog_orders_end",
             INTEGER,
             "orders",
-            "Orders in the backlog at the end",
+            "Orders in the backlog at the end; a split order is not among them if a part of it has "
+            "been assigned to a station",
             better=LESS,
         ),
         Column(
             "open_orders_mean",
             REAL,
             "orders",
-            "Time average of the number of open orders at stations",
+            "Time average of the number of open orders at stations; a split order counts once, "
+            "from the assignment of its first part to the completion of the order",
         ),
         Column("orders_created", INTEGER, "orders", "Orders that arrived"),
         Column(
             "order_redraws",
             INTEGER,
             "draws",
-            "Number of times that the SKU of an order line was drawn again because stock could "
-            "not serve the line",
+            "Number of times that the SKU of a line of an order that arrived was drawn again "
+            "because stock could not serve the line",
         ),
         Column(
             "orders_short",

@@ -15,6 +15,7 @@ use crate::search::Move;
 use crate::units::Us;
 
 use super::Fleet;
+use super::planning::time_in_zone;
 
 /// Delay from which improving a plan is attempted.
 const LATE: Us = 2_000_000;
@@ -45,10 +46,18 @@ impl Fleet {
         }
     }
 
+    /// Whether a robot's new plan arrives late; the drive within a queue zone does not count, as in
+    /// the unhindered time.
     fn is_late(&self, robot: u32) -> bool {
-        let end = self.robots[robot as usize].destination().2;
-        let leg = self.legs[robot as usize].as_ref();
-        leg.is_some_and(|leg| leg.unhindered.is_some_and(|time| end - leg.ready - time > LATE))
+        let state = &self.robots[robot as usize];
+        let Some(leg) = &self.legs[robot as usize] else { return false };
+        let Some(unhindered) = leg.unhindered else { return false };
+        let (goal, _, end) = state.destination();
+        let moves: Vec<Move> = state.moves.iter().cloned().collect();
+        let kind = &self.kinds[state.kind as usize];
+        let zone = self.network.zone[goal as usize];
+        let within = time_in_zone(&self.network, kind, &moves, zone);
+        end - within - leg.ready - unhindered > LATE
     }
 
     /// Robots under way that use a waypoint directly before a robot enters it.

@@ -11,7 +11,7 @@ use std::cmp::Reverse;
 use serde::{Deserialize, Serialize};
 
 use crate::random::Random;
-use crate::units::Us;
+use crate::units::{FOREVER, Us};
 
 use super::disturbed::turn;
 use super::{Counters, Due, Fleet};
@@ -36,8 +36,9 @@ pub struct Lateness {
     random: Random,
     /// Delays that could not be applied yet, per robot.
     owed: Vec<Us>,
-    /// Whether the delay of a robot's next motion has been drawn already.
-    decided: Vec<bool>,
+    /// For each robot whose next motion has its delay already, the last time at which this holds:
+    /// that of the draw or, if the motion is delayed, any.
+    drawn: Vec<Option<Us>>,
 }
 
 impl Lateness {
@@ -55,7 +56,7 @@ impl Lateness {
             repairs,
             random: Random::new(seed),
             owed: vec![0; robots],
-            decided: vec![false; robots],
+            drawn: vec![None; robots],
         }
     }
 
@@ -65,9 +66,10 @@ impl Lateness {
     }
 
     /// Draws and counts the delay of a robot's motion that is about to begin.
-    fn draw(&mut self, robot: u32, counters: &mut Counters) -> Us {
+    fn draw(&mut self, robot: u32, now: Us, counters: &mut Counters) -> Us {
         let owed = std::mem::take(&mut self.owed[robot as usize]);
-        if std::mem::take(&mut self.decided[robot as usize]) {
+        // a motion that replaces another at the moment of its draw has the same delay
+        if self.drawn[robot as usize].replace(now).is_some() {
             return owed;
         }
         counters.motions += 1;
@@ -100,9 +102,9 @@ impl Fleet {
 
     /// Schedules the draw for the robot's next motion, if motions can be late.
     pub(super) fn expect_motion(&mut self, robot: u32) {
-        if self.lateness.is_none() {
-            return;
-        }
+        let Some(lateness) = &mut self.lateness else { return };
+        let drawn = &mut lateness.drawn[robot as usize];
+        *drawn = drawn.filter(|&until| until >= self.now);
         let state = &self.robots[robot as usize];
         let kind = &self.kinds[state.kind as usize];
         let begun = state.committed(&self.network, kind, self.now);
@@ -118,7 +120,7 @@ impl Fleet {
         if self.robots[robot as usize].version != version {
             return;
         }
-        let by = lateness.draw(robot, &mut self.counters);
+        let by = lateness.draw(robot, self.now, &mut self.counters);
         if by > 0 && self.begins_late(robot, by) {
             return;
         }
@@ -141,10 +143,12 @@ impl Fleet {
         let before = ends(self);
         let begins = self.hold(robot, by).is_some();
         let Some(lateness) = &mut self.lateness else { return begins };
-        lateness.decided[robot as usize] = begins;
         if !begins {
             lateness.owed[robot as usize] += by;
-        } else if lateness.repairs && self.rolling.is_none() {
+            return false;
+        }
+        lateness.drawn[robot as usize] = Some(FOREVER);
+        if lateness.repairs && self.rolling.is_none() {
             let after = ends(self);
             let waits = |&other: &u32| {
                 other != robot && after[other as usize] - before[other as usize] > WORTH
@@ -152,7 +156,7 @@ impl Fleet {
             let waiting: Vec<u32> = (0..self.robots.len() as u32).filter(waits).collect();
             self.repair(robot, &waiting);
         }
-        begins
+        true
     }
 
     /// Replans the robots that wait for a late robot, alone or in front of it.

@@ -13,6 +13,7 @@ use crate::robot::{Phase, Robot};
 use crate::search::Move;
 use crate::units::Us;
 
+use super::disturbed::turn;
 use super::pace::{departure, stop_for};
 use super::{Due, EventKind, Fleet, Leg};
 
@@ -202,8 +203,70 @@ fn stop_after(state: &Robot, kept: usize) -> (u32, u8, Us) {
     }
 }
 
-/// Time of a plan that ends in a queue zone from entering the zone to its end.
+/// Time of a plan that ends in a queue zone from entering the zone to its end, without the waits
+/// between its moves there.
 pub(super) fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone: u32) -> Us {
-    let entered = moves.iter().find_map(|step| enters_zone(network, kind, step, zone));
-    entered.map_or(0, |at| moves[moves.len() - 1].end - at)
+    let enters = |(index, step): (usize, &Move)| {
+        enters_zone(network, kind, step, zone).map(|at| (index, at))
+    };
+    let Some((first, at)) = moves.iter().enumerate().find_map(enters) else { return 0 };
+    let within = &moves[first..];
+    let waits: Us = within
+        .windows(2)
+        .map(|pair| pair[1].start - turn(network, kind, &pair[1]) - pair[0].end)
+        .sum();
+    within[within.len() - 1].end - at - waits
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::Plan;
+
+    const KIND: Kind = Kind {
+        acceleration: 0.5,
+        deceleration: 0.5,
+        top_speed: 1.5,
+        full_turn: 2_500_000,
+        pod_transfer: 3_000_000,
+    };
+
+    /// Three waypoints in a row, a metre apart; the second and third are the queue of a station.
+    fn queue() -> Network {
+        Network::new(Plan {
+            x: vec![0.0, 1.0, 2.0],
+            y: vec![0.0; 3],
+            tier: vec![0; 3],
+            edge_start: vec![0, 1, 2, 2],
+            edge_target: vec![1, 2],
+            storage: vec![false; 3],
+            queue: vec![false, true, true],
+            stations: vec![vec![2, 1]],
+            ..Plan::default()
+        })
+        .expect("a queue")
+    }
+
+    fn step(from: u32, start: Us) -> Move {
+        Move {
+            from,
+            to: from + 1,
+            heading: 0,
+            heading_before: 0,
+            start,
+            end: start + 2_828_428,
+            ride: false,
+            late: 0,
+            begun: 0,
+        }
+    }
+
+    #[test]
+    fn waits_in_the_queue_are_not_time_of_the_drive() {
+        let network = queue();
+        let zone = network.zone[2];
+        let time = |second| time_in_zone(&network, &KIND, &[step(0, 0), step(1, second)], zone);
+        assert_eq!(time(2_828_428), 2_828_428);
+        assert_eq!(time(9_000_000), 2_828_428);
+    }
 }

@@ -23,7 +23,7 @@ use super::{Counters, Due, Event, Fleet, Lateness, Leg, Pace};
 const MAGIC: &[u8] = b"rmfs-traffic";
 
 /// Version of the format.
-const VERSION: u8 = 7;
+const VERSION: u8 = 8;
 
 type Agenda = BinaryHeap<Reverse<(Us, u32, Due, u32)>>;
 
