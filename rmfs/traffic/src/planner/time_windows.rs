@@ -36,6 +36,12 @@ fn guide_on(network: &Network) -> Guide {
     if network.largest_island > LARGE_FLOOR { Guide::Near(0) } else { Guide::Exact }
 }
 
+/// Whether a trip needs a ride. Such trips are left to the usual search: they wait for their elevator
+/// for minutes, longer than the swift search looks ahead.
+fn needs_ride(network: &Network, agent: &Agent) -> bool {
+    network.island[agent.start as usize] != network.island[agent.goal as usize]
+}
+
 impl TimeWindows {
     fn plan_one(&mut self, scene: &mut Scene, agent: &Agent) -> Option<Vec<Move>> {
         let mut query = Query {
@@ -57,14 +63,16 @@ impl TimeWindows {
         let before = scene.pathfinder.expansions;
         let Scene { network, table, pathfinder, .. } = scene;
         let needed = agent.effort == u64::MAX;
-        let patient = needed && self.swift.is_some();
+        let rides = needs_ride(network, agent);
+        let swift = self.swift.as_ref().filter(|_| !rides);
+        let patient = needed && swift.is_some();
         let urgency = match (needed, patient) {
             (false, _) => Urgency::Try,
             (true, false) => Urgency::Whatever,
             (true, true) => self.waiting.urgency(agent.robot, agent.goal, scene.now)?,
         };
         let (_, until) = table.gap_at(network.resource[agent.start as usize], agent.ready)?;
-        let mut outcome = match &self.swift {
+        let mut outcome = match swift {
             Some(swift) => swift.search(pathfinder, network, table, &query, until, urgency),
             None => pathfinder.search(network, table, &query),
         };
@@ -76,7 +84,7 @@ impl TimeWindows {
                 outcome = pathfinder.search(network, table, &query);
             }
         }
-        if needed && self.swift.is_none() && self.swift_from > 0 {
+        if needed && !rides && self.swift.is_none() && self.swift_from > 0 {
             let mean = self.load.count(pathfinder.expansions - before);
             self.swift = (mean >= self.swift_from).then_some(Swift::FOR_BIG_FLEETS);
         }
