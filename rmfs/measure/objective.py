@@ -52,7 +52,7 @@ def objective_of(footprint: pd.Series[Any], weights: Mapping[str, float]) -> flo
     return sum(values) if all(map(isfinite, values)) else -inf
 
 
-def require_objective(value: float, weights: Mapping[str, float], before: str) -> None:
+def require_objective(value: float, weights: Mapping[str, float], made: str) -> None:
     """Check that an objective had a value before it is optimised.
 
     Parameters
@@ -61,7 +61,7 @@ def require_objective(value: float, weights: Mapping[str, float], before: str) -
         The objective of a run, or its mean over runs; see `objective_of`.
     weights
         Weights by column.
-    before
+    made
         How the runs were made; for the message.
 
     Raises
@@ -71,6 +71,6 @@ def require_objective(value: float, weights: Mapping[str, float], before: str) -
     """
     if not isfinite(value):
         raise InputError(
-            f"objective {', '.join(weights)}: must have a value in every run {before}; choose "
+            f"objective {', '.join(weights)}: must have a value in every run {made}; choose "
             "other columns, or longer runs"
         )
