@@ -183,18 +183,17 @@ impl Profile {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn slow() -> Kind {
-        Kind {
-            acceleration: 0.5,
-            deceleration: 0.5,
-            top_speed: 1.5,
-            full_turn: 2_500_000,
-            pod_transfer: 3_000_000,
-        }
-    }
+    /// A slow robot, also for the tests of other modules.
+    pub const KIND: Kind = Kind {
+        acceleration: 0.5,
+        deceleration: 0.5,
+        top_speed: 1.5,
+        full_turn: 2_500_000,
+        pod_transfer: 3_000_000,
+    };
 
     #[test]
     fn known_run_times() {
@@ -206,19 +205,19 @@ mod tests {
             (10.0, 29.0 / 3.0),
             (20.0, 49.0 / 3.0),
         ] {
-            assert!((slow().run(length).duration() - seconds).abs() < 1e-6);
+            assert!((KIND.run(length).duration() - seconds).abs() < 1e-6);
         }
     }
 
     #[test]
     fn a_quarter_turn() {
-        assert_eq!(slow().turn(0, 250_000), 625_000);
-        assert_eq!(slow().turn(250_000, 0), 625_000);
+        assert_eq!(KIND.turn(0, 250_000), 625_000);
+        assert_eq!(KIND.turn(250_000, 0), 625_000);
     }
 
     #[test]
     fn time_and_position_are_inverse() {
-        let kind = Kind { acceleration: 1.0, deceleration: 0.4, ..slow() };
+        let kind = Kind { acceleration: 1.0, deceleration: 0.4, ..KIND };
         for initial_speed in [0.0, 0.3, 1.0, 1.5] {
             for length in [0.05, 0.7, 1.0, 3.0, 4.0, 30.0] {
                 let profile = Profile::new(&kind, initial_speed, length);
@@ -238,7 +237,7 @@ mod tests {
     fn position_is_the_integral_of_speed() {
         for initial_speed in [0.0, 0.8, 1.5] {
             for length in [0.5, 2.0, 12.0] {
-                let profile = Profile::new(&slow(), initial_speed, length);
+                let profile = Profile::new(&KIND, initial_speed, length);
                 let steps = 20_000;
                 let dt = profile.duration() / f64::from(steps);
                 let mut position = 0.0;

@@ -221,15 +221,8 @@ pub(super) fn time_in_zone(network: &Network, kind: &Kind, moves: &[Move], zone:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinematics::tests::KIND;
     use crate::network::Plan;
-
-    const KIND: Kind = Kind {
-        acceleration: 0.5,
-        deceleration: 0.5,
-        top_speed: 1.5,
-        full_turn: 2_500_000,
-        pod_transfer: 3_000_000,
-    };
 
     /// Three waypoints in a row, a metre apart; the second and third are the queue of a station.
     fn queue() -> Network {

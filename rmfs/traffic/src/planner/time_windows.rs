@@ -118,19 +118,11 @@ impl Planner for TimeWindows {
 mod tests {
     use super::*;
     use crate::costs::Cache;
-    use crate::kinematics::Kind;
+    use crate::kinematics::tests::KIND;
     use crate::network::{Network, Plan};
     use crate::reservations::{Interval, Table};
     use crate::search::Pathfinder;
     use crate::units::Us;
-
-    const KIND: Kind = Kind {
-        acceleration: 0.5,
-        deceleration: 0.5,
-        top_speed: 1.5,
-        full_turn: 2_500_000,
-        pod_transfer: 3_000_000,
-    };
 
     /// Six waypoints in a row, a metre apart: unhindered, the way from end to end takes 19/3 s.
     fn row() -> Network {
