@@ -51,6 +51,14 @@ def test_labels_per_question_do_not_grow_with_the_fleet() -> None:
     assert few < 400
 
 
+def test_robots_that_wait_for_elevators_do_not_ask_all_the_time() -> None:
+    """On three tiers with 80 robots on each, most searches find a way, and labels are limited."""
+    counted = crowded("study-tiers", 80).traffic.counters()
+    questions = counted["plans"] + counted["replans"] + counted["plan_failures"]
+    assert counted["plan_failures"] < 0.5 * counted["plans"]
+    assert counted["expansions"] < 2_000 * questions
+
+
 @pytest.mark.parametrize(
     ("layout", "robots"), [("small", 24), ("study-32", 64), ("study-tiers", 32)]
 )
