@@ -87,6 +87,25 @@ def test_high_periods_of_orders_and_bundles_coincide_in_futures() -> None:
         assert 0 < sum(high[0]) < len(high[0])
 
 
+def test_futures_do_not_know_that_nothing_more_will_come() -> None:
+    """The last order of this run has arrived; in other futures, more arrive."""
+    demand = {"mode": "poisson", "orders_per_h": 12.0, "per_station": False, "initial_orders": 5}
+    run = made("small", scenario__demand=demand)
+    run.run_until(1.0)
+    process = run.arrivals._orders._processes[-1]
+    while process._next is not None:
+        run.run_until(process._next.time_us / 1e6)
+    assert run.now_s < 400.0
+    before, snapshot = run.world.orders_created, run._snapshot(None)
+    more = []
+    for sample in range(20):
+        future = snapshot((1, sample))[0]
+        more.append(future.arrivals._orders.next_us <= 500_000_000)
+    assert 1 < sum(more) < 20
+    run.run_until(500.0)
+    assert run.world.orders_created == before
+
+
 def test_one_future_for_all_that_is_compared_and_another_next_time() -> None:
     run = with_a_free_slot()
     trials = trials_of(run)

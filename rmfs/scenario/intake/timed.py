@@ -45,7 +45,7 @@ class Timed(Generic[T]):
         self._next = next(candidates, None)
 
     def redraw(self, now_us: int) -> None:
-        """Redraw the time of the next arrival.
+        """Redraw the time of the next arrival, even if none was to come before the end of the run.
 
         Raises
         ------
@@ -53,15 +53,14 @@ class Timed(Generic[T]):
             If arrival times are not drawn by a Poisson process, for example because they come from
             a file.
         """
-        if self._next is None:
-            return
-        if not isinstance(self._candidates, Poisson):
+        if isinstance(self._candidates, Poisson):
+            self._candidates.redraw(now_us)
+            self._next = next(self._candidates, None)
+        elif self._next is not None:
             raise InputError(
                 "looking ahead: not possible with orders or bundles from a file, as their future "
                 "arrivals must be unknown; use drawn demand"
             )
-        self._candidates.redraw(now_us)
-        self._next = next(self._candidates, None)
 
     @property
     def next_us(self) -> int:
