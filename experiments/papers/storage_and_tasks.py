@@ -51,8 +51,8 @@ def main(arguments: list[str] | None = None) -> None:
         compared = differences(solved, COLUMNS, RULES, by="rules")
         study.publish(compared, f"{name}-differences", COLUMNS)
         publish_added(study, part, ("demand",), name, COLUMNS)
-    shares = means(frame[frame["optimiser_calls"] > 0], DECIDED, by="rules")
-    study.publish(shares, "storage-and-tasks-decisions", DECIDED)
+        shares = means(part[part["optimiser_calls"] > 0], DECIDED, by="rules")
+        study.publish(shares, f"{name}-decisions", DECIDED)
 
 
 if __name__ == "__main__":

@@ -50,8 +50,9 @@ def test_the_study_is_run_and_published(design, tmp_path, monkeypatch):
         both = rows["units_per_h mean"]
         apart = compared.loc["PSA placement", "units_per_h difference"]
         assert apart == pytest.approx(both.iloc[1] - both.iloc[0], abs=0.11)
-    shares = pd.read_csv("out/storage-and-tasks-decisions.csv", index_col=0)
-    assert shares["optimiser_decision_share mean"].min() >= 0.9
+        shares = pd.read_csv(f"out/storage-and-tasks-{demand}-decisions.csv", index_col=0)
+        assert list(shares["seeds"]) == [2, 2]
+        assert shares["optimiser_decision_share mean"].min() >= 0.9
 
 
 def test_runs_with_too_few_decisions_by_the_optimiser_are_not_published():
