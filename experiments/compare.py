@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ import pandas as pd
 from rmfs.errors import InputError
 from rmfs.experiments.complete import lacking
 from rmfs.experiments.design import planning as plans
-from rmfs.experiments.results import load
+from rmfs.experiments.results import assigned
 from rmfs.experiments.statistics.paired import paired, unpaired
 from rmfs.experiments.store import Store
 from rmfs.measure.dictionary import FOOTPRINT, learnt, names, reproducible
@@ -31,6 +32,9 @@ def numbers() -> list[str]:
     columns = (*FOOTPRINT, *learnt())
     return [column.name for column in columns if column.is_number and column.name != "seed"]
 
+
+OUTPUTS = ("baseline", "other", "pairs", "difference", "low", "high", "relative", "p")
+"""Columns that `Comparison.outputs_of` returns."""
 
 NOT_INPUT = ("written", "machine", "check")
 """Keys of run.json that do not describe what was simulated."""
@@ -58,6 +62,28 @@ class Side:
     inputs: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
 
+    @cached_property
+    def by_seed(self) -> pd.DataFrame:
+        """The numerical columns of the footprint, indexed by seed.
+
+        Raises
+        ------
+        InputError
+            If there is no column seed, or a seed occurs more than once.
+        """
+        # not the replication: without common random numbers, each arm has other seeds
+        if "seed" not in self.rows:
+            raise InputError(f"{self.name}: has no column seed")
+        rows = self.rows.set_index("seed")
+        if not rows.index.is_unique:
+            seed = rows.index[rows.index.duplicated()][0]
+            raise InputError(
+                f"{self.name}: has several rows with seed {seed}; the rows of an arm need a seed "
+                "each, and a table with several arms needs the column arm"
+            )
+        present = [column for column in numbers() if column in rows]
+        return rows[present].astype("Float64").astype(float)
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -67,25 +93,60 @@ class Comparison:
     ----------
     inputs
         Inputs that differ, with the columns `key`, `baseline` and `other`.
-    outputs
-        One row per footprint column. `baseline` and `other` are means over the common seeds with a
-        value on both sides or, if there are none, over all values of each side; `pairs` is the
-        number of these common seeds. `difference` is `other` minus `baseline`; `low` and `high`
-        are the ends of its confidence interval, and `p` is its p value. `relative` is the
-        difference divided by `baseline`. The interval and `p` are nan if there are too few seeds:
-        only one common seed, or no common seed and a side with a single seed.
+    by_seed
+        Numerical columns of the baseline and of the other side, indexed by seed: of the common
+        seeds or, if there are none, of all.
     pairs
-        Number of common seeds; if it is 0, the two samples were treated as independent.
+        Number of common seeds; if it is 0, the two samples are treated as independent.
     identical
         Whether both sides have the same seeds and equal values in all reproducible columns.
+    confidence
+        Confidence level of the intervals.
     """
 
     baseline: Side
     other: Side
     inputs: pd.DataFrame
-    outputs: pd.DataFrame
+    by_seed: tuple[pd.DataFrame, pd.DataFrame]
     pairs: int
     identical: bool
+    confidence: float
+
+    @cached_property
+    def columns(self) -> list[str]:
+        """Numerical columns of the footprint that both sides have and one has a value in."""
+        a, b = self.by_seed
+        known = set(a.columns[a.notna().any()]) | set(b.columns[b.notna().any()])
+        return [c for c in numbers() if c in a and c in b and c in known]
+
+    @cached_property
+    def outputs(self) -> pd.DataFrame:
+        """One row for each of `columns`, as `outputs_of` returns them."""
+        return self.outputs_of(self.columns)
+
+    def outputs_of(self, columns: Sequence[str]) -> pd.DataFrame:
+        """Compare both sides in some columns of the footprint.
+
+        Returns
+        -------
+        One row per column. `baseline` and `other` are means over the common seeds with a value on
+        both sides or, if there are none, over all values of each side; `pairs` is the number of
+        these common seeds. `difference` is `other` minus `baseline`; `low` and `high` are the ends
+        of its confidence interval, and `p` is its p value. `relative` is the difference divided by
+        `baseline`. The interval and `p` are nan if there are too few seeds: only one common seed,
+        or no common seed and a side with a single seed.
+        """
+        a, b = self.by_seed
+        tested = paired if self.pairs else unpaired
+        rows: dict[str, dict[str, float]] = {}
+        for column in columns:
+            told = tested(b[column], a[column], confidence=self.confidence)
+            # a pair for the paired difference, so that it is the difference of the means
+            both = a.index[a[column].notna() & b[column].notna()] if told["pairs"] else slice(None)
+            means = {"baseline": a[column][both].mean(), "other": b[column][both].mean()}
+            rows[column] = {**means, **told}
+        index = pd.Index(rows, name="column")
+        return pd.DataFrame(list(rows.values()), index=index, columns=pd.Index(OUTPUTS))
 
     @property
     def notes(self) -> list[str]:
@@ -141,44 +202,19 @@ def _arm_of(side: Side) -> str:
 
 
 def _compared(first: Side, other: Side, confidence: float) -> Comparison:
-    a, b = _by_seed(first), _by_seed(other)
+    a, b = first.by_seed, other.by_seed
     common = a.index.intersection(b.index)
-    together = len(common) > 0
-    if together:
+    if len(common):
         a, b = a.loc[common], b.loc[common]
-    rows = {}
-    for column in numbers():
-        if column in a and column in b and (a[column].notna().any() or b[column].notna().any()):
-            told = (paired if together else unpaired)(b[column], a[column], confidence=confidence)
-            # a pair for the paired difference, so that it is the difference of the means
-            both = a.index[a[column].notna() & b[column].notna()] if told["pairs"] else slice(None)
-            means = {"baseline": a[column][both].mean(), "other": b[column][both].mean()}
-            rows[column] = {**means, **told}
-    outputs = pd.DataFrame.from_dict(rows, orient="index")
-    outputs.index.name = "column"
     shared = [c for c in _repeating() if c in first.rows and c in other.rows]
     same = len(first.rows) == len(other.rows) and _text(first, shared) == _text(other, shared)
-    return Comparison(first, other, _input_differences(first, other), outputs, len(common), same)
+    inputs = _input_differences(first, other)
+    return Comparison(first, other, inputs, (a, b), len(common), same, confidence)
 
 
 def _repeating() -> list[str]:
     """Return the reproducible columns of the footprint, with those of registered measures."""
     return [*reproducible("footprint"), *(c.name for c in learnt() if not c.measured)]
-
-
-def _by_seed(side: Side) -> pd.DataFrame:
-    # not the replication: without common random numbers, each arm has other seeds
-    if "seed" not in side.rows:
-        raise InputError(f"{side.name}: has no column seed")
-    rows = side.rows.set_index("seed")
-    if not rows.index.is_unique:
-        seed = rows.index[rows.index.duplicated()][0]
-        raise InputError(
-            f"{side.name}: has several rows with seed {seed}; the rows of an arm need a seed each, "
-            "and a table with several arms needs the column arm"
-        )
-    present = [column for column in numbers() if column in rows]
-    return rows[present].astype("Float64").astype(float)
 
 
 def _text(side: Side, columns: list[str]) -> str:
@@ -228,8 +264,9 @@ def _run_side(path: Path) -> Side:
 def _experiment_sides(path: Path, arm: str, source: str) -> list[Side]:
     plan = plans.load(path)
     chosen = [plan.arm(arm)] if arm else plan.arms
-    frame = load(path)
-    missing = lacking(plan, Store(path), {one.name for one in chosen})
+    store = Store(path)
+    frame = assigned(plan, store)
+    missing = lacking(plan, store, {one.name for one in chosen}, rows=frame)
     note = f"{source}: {missing}" if missing else ""
     return [
         Side(
@@ -329,7 +366,7 @@ def chosen_columns(
     InputError
         If a requested column does not exist.
     """
-    there = list(comparison.outputs.index)
+    there = comparison.columns
     wrong = [column for column in columns if column not in there]
     if wrong:
         valid = ", ".join(c for c in (*names("footprint"), *numbers()) if c in there)

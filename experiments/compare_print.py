@@ -8,6 +8,8 @@ from rmfs.experiments.console import open_console
 from rmfs.experiments.wording import p_value
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from rmfs.experiments.compare import Comparison
 
 ROUNDING = 1e-12
@@ -31,11 +33,11 @@ def print_comparisons(found: list[Comparison], columns: list[str], *, everything
         if one.identical:
             console.print("identical: all reproducible columns are the same")
         _print_inputs(console, one)
-        shown = chosen_columns(one, columns, everything=everything)
-        console.print(_outputs(one, shown))
+        shown = one.outputs_of(chosen_columns(one, columns, everything=everything))
+        console.print(_outputs(shown))
         console.print(_how(one))
-        for column in shown:
-            if (pairs := one.outputs["pairs"][column]) < one.pairs:
+        for column, pairs in shown["pairs"].items():
+            if pairs < one.pairs:
                 console.print(f"{column}: {pairs:.0f} of these seeds have a value on both sides")
         for note in one.notes:
             console.print(f"Note: {note}.", markup=False)
@@ -55,23 +57,23 @@ def _print_inputs(console: Any, one: Comparison) -> None:
     console.print(shown)
 
 
-def _outputs(one: Comparison, columns: list[str]) -> Any:
+def _outputs(outputs: pd.DataFrame) -> Any:
     from rich import box
     from rich.table import Table
 
     from rmfs.experiments.statistics.paired import holm
 
     # over what is shown: a hundred columns nobody looks at prove nothing
-    corrected = holm(one.outputs.loc[columns, "p"])
+    corrected = holm(outputs["p"])
     shown = Table("output", box=box.SIMPLE_HEAD)
     heads = ["baseline", "other", "difference", "relative"]
-    several = bool(one.outputs["low"].notna().any())
+    several = bool(outputs["low"].notna().any())
     if several:
         heads += ["interval", "p (Holm)"]
     for head in heads:
         shown.add_column(head, justify="right")
-    for column in columns:
-        row: dict[Any, Any] = one.outputs.loc[column].to_dict()
+    for column in outputs.index:
+        row: dict[Any, Any] = outputs.loc[column].to_dict()
         p = corrected[column]
         scale = max(abs(row["baseline"]), abs(row["other"]))
         cells = [_number(row[key], scale) for key in ("baseline", "other", "difference")]

@@ -10,21 +10,26 @@ from rmfs.experiments.results import assigned, failed_pairs
 if TYPE_CHECKING:
     from collections.abc import Collection
 
+    import pandas as pd
+
     from rmfs.experiments.design.planning import Plan
     from rmfs.experiments.store import Store
 
 
-def lacking(plan: Plan, store: Store, only: Collection[str] = ()) -> str:
+def lacking(
+    plan: Plan, store: Store, only: Collection[str] = (), *, rows: pd.DataFrame | None = None
+) -> str:
     """Return a description of the missing runs of an experiment; empty if none are missing.
 
     Parameters
     ----------
     only
         Names of the arms to check. Default: all arms.
+    rows
+        The finished runs, as `assigned` returns them. Default: they are read.
     """
     lost = failed_pairs(plan, store)
-    rows = assigned(plan, store)
-    now = schedule(plan, rows, lost)
+    now = schedule(plan, assigned(plan, store) if rows is None else rows, lost)
     runs = [run for run in now.runs if not only or run.arm in only]
     finished = store.finished(plan.design.keep)
     arms = {arm.name: arm for arm in plan.arms}

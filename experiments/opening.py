@@ -51,7 +51,7 @@ class Opened:
             raise InputError(
                 f"{self.store.folder}: no finished runs yet; rmfs experiment run {self.name}"
             )
-        return frame, lacking(self.plan, self.store)
+        return frame, lacking(self.plan, self.store, rows=frame)
 
 
 def opened(design: str, out: Path | None = None) -> Opened:

@@ -69,6 +69,7 @@ class Store:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._known: dict[Path, tuple[_Version, pa.Table]] = {}
 
     # writing
 
@@ -172,7 +173,7 @@ class Store:
         read = None if wanted is None else [*wanted, FINISHED]
         for _ in range(_ATTEMPTS):
             try:
-                tables = [_rows(path, read) for path in sorted(self._files())]
+                tables = [self._rows(path, read) for path in sorted(self._files())]
                 break
             except FileNotFoundError:
                 continue  # merged in between
@@ -182,6 +183,18 @@ class Store:
             return pd.DataFrame(columns=pd.Index(wanted or COLUMNS))
         frame = _newest(_together(tables).to_pandas())
         return frame if wanted is None or FINISHED in wanted else frame.drop(columns=FINISHED)
+
+    def _rows(self, path: Path, columns: Sequence[str] | None) -> pa.Table:
+        """Return what `_rows` reads; a file that has been read as a whole is not read again."""
+        version = _version(path)
+        before = self._known.get(path)
+        if before is not None and before[0] == version:
+            table = before[1]
+            return table if columns is None else table.select(list(columns))
+        table = _rows(path, columns)
+        if columns is None:
+            self._known[path] = version, table
+        return table
 
     def finished(self, tables: Sequence[str] = ()) -> set[str]:
         """Return the keys of the finished runs for which all of `tables` are stored."""
@@ -223,6 +236,15 @@ class Store:
     def _files(self) -> list[Path]:
         # hidden ones are being written
         return [p for p in (self.folder / RUNS).glob("*.parquet") if not p.name.startswith(".")]
+
+
+_Version = tuple[int, int, int]
+
+
+def _version(path: Path) -> _Version:
+    """Return what changes if a file is replaced; raises FileNotFoundError if it is not there."""
+    found = path.stat()
+    return found.st_ino, found.st_size, found.st_mtime_ns
 
 
 def _read(path: Path, columns: Sequence[str] | None = None) -> pa.Table:

@@ -136,16 +136,15 @@ def against(
 
 
 def holm(p_values: pd.Series) -> pd.Series:
-    """Return p values corrected by Holm's method; missing values stay missing."""
-    from rmfs.experiments.extras import statsmodels
-
-    known = p_values.dropna()
-    if len(known) < 2:
-        return p_values.astype(float)
-    multitest = statsmodels("stats.multitest")
-    corrected = pd.Series(np.nan, index=p_values.index)
-    corrected[known.index] = multitest.multipletests(known.to_numpy(), method="holm")[1]
-    return corrected
+    """Return p values corrected by Holm's method (Holm 1979); missing values stay missing."""
+    # not by statsmodels, which collects garbage at each call: a third of a second each time
+    values = p_values.to_numpy(dtype=float, na_value=np.nan)
+    known = int(np.count_nonzero(~np.isnan(values)))
+    smallest_first = np.argsort(values, kind="stable")[:known]
+    multiplied = values[smallest_first] * np.arange(known, 0, -1)
+    corrected = np.full(len(values), np.nan)
+    corrected[smallest_first] = np.minimum(np.maximum.accumulate(multiplied), 1.0)
+    return pd.Series(corrected, index=p_values.index)
 
 
 def _p_value(differences: NDArray[np.float64]) -> float:

@@ -5,6 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from stand_in import Inline
+
+from rmfs import experiments
+from rmfs.experiments.running.driver import drive
+from rmfs.experiments.store import Store
 
 TINY = {
     "format": "rmfs-design/1",
@@ -32,6 +37,16 @@ def design(tmp_path: Path):
         return path
 
     return write
+
+
+@pytest.fixture(scope="session")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The results of the tiny design with `keep = ["series"]`, to be copied by tests."""
+    folder = tmp_path_factory.mktemp("finished")
+    path = folder / "design.toml"
+    path.write_text(toml({**TINY, "keep": ["series"]}), encoding="utf-8")
+    drive(experiments.plan(path), Store(folder / "tiny"), Inline())
+    return folder / "tiny"
 
 
 def toml(table: dict) -> str:

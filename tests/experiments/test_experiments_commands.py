@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pandas as pd
@@ -19,12 +20,11 @@ from rmfs.measure.columns import REAL, Column
 
 
 @pytest.fixture
-def made(design, tmp_path, monkeypatch):
+def made(design, finished, tmp_path, monkeypatch):
     """A design whose results are in results/tiny below the working directory."""
     monkeypatch.chdir(tmp_path)
-    path = design(keep=["series"])
-    drive(experiments.plan(path), Store(Path("results/tiny")), Inline())
-    return str(path)
+    shutil.copytree(finished, "results/tiny")
+    return str(design(keep=["series"]))
 
 
 def told(capsys) -> str:

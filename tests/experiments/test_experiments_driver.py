@@ -8,6 +8,7 @@ from functools import partial
 
 import numpy as np
 import pandas as pd
+import pyarrow.parquet as pq
 import pytest
 import stand_in
 from stand_in import Inline, work, work_that_fails_for_random
@@ -277,6 +278,26 @@ def test_the_row_of_a_repeated_run_is_that_of_the_last_time(design, store):
         assert set(store.rows(["elapsed_s"])["elapsed_s"]) == {2.0}
         assert set(store.rows(["elapsed_s"])) == {"run", "elapsed_s"}
         store.merge(at_least=2)
+
+
+def test_a_file_is_read_again_only_if_it_was_replaced(design, store, monkeypatch):
+    plan = experiments.plan(design())
+    drive(plan, store, Inline())
+    opened = []
+    real = pq.ParquetFile
+    monkeypatch.setattr(pq, "ParquetFile", lambda path: opened.append(path.stem) or real(path))
+    reading = Store(store.folder)
+    before = reading.rows()
+    assert len(opened) == len(before) == 12
+    assert reading.finished() == set(before["run"]) and reading.rows().equals(before)
+    assert len(opened) == 12
+    job = plan.job(plan.arms[0], 2)
+    again = work(job)
+    store.add(job, replace(again, footprint=again.footprint.assign(units_per_h=1.0)), CODE)
+    after = reading.rows().set_index("run")
+    assert opened[12:] == [job.key] and after["units_per_h"][job.key] == 1.0
+    store.merge(at_least=2)
+    assert set(reading.rows()["run"]) == set(before["run"])
 
 
 def test_what_is_half_written_is_never_seen(design, store):

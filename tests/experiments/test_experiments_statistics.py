@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 from scipy import stats
+from statsmodels.stats import multitest
 
 from rmfs.errors import InputError
 from rmfs.experiments.figures.progression import per_bin, progression
@@ -126,6 +127,16 @@ def test_holm_by_hand():
     corrected = holm(pd.Series([0.01, 0.04, 0.03, np.nan], index=list("abcd")))
     assert corrected[["a", "b", "c"]].tolist() == pytest.approx([0.03, 0.06, 0.06])
     assert np.isnan(corrected["d"])
+
+
+def test_holm_is_that_of_statsmodels():
+    random = np.random.default_rng(3)
+    for count in (1, 2, 7, 40):
+        p = random.random(count).round(1)  # with ties
+        given = pd.Series(np.insert(p, 0, np.nan))
+        expected = multitest.multipletests(p, method="holm")[1]
+        assert holm(given)[1:].tolist() == expected.tolist()
+    assert holm(pd.Series([np.nan])).isna().all() and holm(pd.Series([], dtype=float)).empty
 
 
 def test_unknown_arms_and_columns_are_told():

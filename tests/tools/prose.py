@@ -18,6 +18,7 @@ import random
 import re
 import sys
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -64,7 +65,8 @@ def pages() -> list[str]:
     return sorted(kept | {"README.md", "CHANGELOG.md"})
 
 
-def docstrings() -> list[Docstring]:
+@cache
+def docstrings() -> tuple[Docstring, ...]:
     """Return all docstrings of public modules, classes, functions and methods, sorted by place."""
     found: list[Docstring] = []
     for package in PACKAGES:
@@ -75,10 +77,11 @@ def docstrings() -> list[Docstring]:
                 continue
             if not any(part.startswith("_") and part != "__init__.py" for part in inside):
                 found += _of_module(path)
-    return sorted(found, key=lambda one: (one.place, one.name))
+    return tuple(sorted(found, key=lambda one: (one.place, one.name)))
 
 
-def others(package: str) -> list[Docstring]:
+@cache
+def others(package: str) -> tuple[Docstring, ...]:
     """Return the docstrings of another installed package that are as short as most of ours.
 
     Left out are tests, and what readers do not rate, such as examples.
@@ -101,7 +104,7 @@ def others(package: str) -> list[Docstring]:
             text = FURTHER.split(one.text)[0].rstrip()
             if text and text.count("\n") < LONGEST:
                 found.setdefault(text, replace(one, text=text))
-    return list(found.values())
+    return tuple(found.values())
 
 
 def _of_module(path: Path, root: Path = ROOT) -> Iterator[Docstring]:
