@@ -6,9 +6,9 @@ affect how far robots drive. Therefore the fleet is so small that driving is the
 metres per unit are shown with units, lines and orders per hour. Bundles per hour are shown as well,
 because storing fewer bundles frees robots for a while.
 
-For each kind of demand (a backlog, and orders that arrive over time), there are three tables:
-means; differences from the two rules, paired by seed; and the gains of four of the models over
-their own start rules, also paired by seed.
+For each kind of demand (a backlog, and orders that arrive over time), there are four tables:
+means; differences from the two rules, paired by seed; the gains of four of the models over their
+own start rules, also paired by seed; and by whom decisions were made.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from __future__ import annotations
 import sys
 
 from rmfs.experiments.papers.benefit import (
-    DECISION_S,
     SHARES,
     START,
     completed,
@@ -35,7 +34,6 @@ COLUMNS = (
     "units_per_visit",
     "bundles_per_h",
 )
-DECIDED = (*SHARES, DECISION_S)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -51,8 +49,8 @@ def main(arguments: list[str] | None = None) -> None:
         compared = differences(solved, COLUMNS, RULES, by="rules")
         study.publish(compared, f"{name}-differences", COLUMNS)
         publish_added(study, part, ("demand",), name, COLUMNS)
-        shares = means(part[part["optimiser_calls"] > 0], DECIDED, by="rules")
-        study.publish(shares, f"{name}-decisions", DECIDED)
+        shares = means(part[part["optimiser_calls"] > 0], SHARES, by="rules")
+        study.publish(shares, f"{name}-decisions", SHARES)
 
 
 if __name__ == "__main__":
