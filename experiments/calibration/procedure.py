@@ -26,8 +26,6 @@ from math import ceil, floor, inf, log10, nan, sqrt
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from scipy import stats
-from scipy.optimize import isotonic_regression
 
 from rmfs.errors import InputError
 
@@ -265,6 +263,8 @@ class _Procedure:
         The true mean is above the interval with probability at most `error`, and below it with
         probability at most `error`. An accepted guess can be wrong in one direction only.
         """
+        from scipy import stats  # takes a second, which the other commands need not wait for
+
         goal = self.goal
         first = self.next_seed
         values = self._values(level, first, goal.test_seeds)
@@ -328,6 +328,8 @@ class _Curve:
     @classmethod
     def of(cls, steps: Sequence[Step], goal: Goal, *, rising: bool) -> _Curve:
         """Return the isotonic regression of the means, weighted by their numbers of seeds."""
+        from scipy.optimize import isotonic_regression
+
         level, which = np.unique([step.level for step in steps], return_inverse=True)
         seeds = np.array([step.seeds for step in steps])
         weight = np.bincount(which, seeds)
