@@ -173,7 +173,9 @@ class Store:
         read = None if wanted is None else [*wanted, FINISHED]
         for _ in range(_ATTEMPTS):
             try:
-                tables = [self._rows(path, read) for path in sorted(self._files())]
+                paths = sorted(self._files())
+                tables = [self._rows(path, read) for path in paths]
+                self._known = {p: self._known[p] for p in paths if p in self._known}
                 break
             except FileNotFoundError:
                 continue  # merged in between
@@ -190,7 +192,12 @@ class Store:
         before = self._known.get(path)
         if before is not None and before[0] == version:
             table = before[1]
-            return table if columns is None else table.select(list(columns))
+            # like reading: a column that the file lacks is left out
+            return (
+                table
+                if columns is None
+                else table.select([name for name in table.column_names if name in columns])
+            )
         table = _rows(path, columns)
         if columns is None:
             self._known[path] = version, table
